@@ -14,8 +14,31 @@
 
 namespace pushid {
 namespace {
+
 Error NotAsFitted(const std::string& id, const std::string& what) {
   return Error{"recording " + id + " " + what};
+}
+
+// The fit without what was put in beside its recordings, by the same weights.
+FitOptions OfDataAlone(FitOptions options) {
+  for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
+  options.settling_weight = options.mode_weight = 0.0;
+  return options;
+}
+
+void ClassifyByDataAlone(const FitProblem& with, const FitPoint& estimate,
+                         const std::vector<std::string>& names, int num_threads,
+                         const JobProgress& progress, std::vector<Profile>* profiles) {
+  const FitOptions options = OfDataAlone(with.options());
+  const FitProblem alone(with.recordings(), options);
+  const double put_in = CostAt(with.WithoutRecordings(), estimate);
+  if (CostAt(alone.WithoutRecordings(), estimate) == put_in) return;
+  const SolveStart refit = Refit(alone, estimate);
+  if (!refit.usable) return;
+  const auto found = ClassifyProfiles(alone, refit.to, ComputeUncertainty(alone, refit.to), names,
+                                      num_threads, progress);
+  if (!found.ok()) return;
+  for (size_t i = 0; i < profiles->size(); ++i) (*profiles)[i].by_data_alone = found.value()[i];
 }
 
 }  // namespace
@@ -134,32 +157,6 @@ Result<std::string> CheckSections(const std::vector<PendulumRecording>& recordin
   if (!design.ok()) return Error{"--design: " + design.error().message};
   return text + "\n" + design.value();
 }
-
-namespace {
-
-// The fit without what was put in beside its recordings, by the same weights.
-FitOptions OfDataAlone(FitOptions options) {
-  for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
-  options.settling_weight = options.mode_weight = 0.0;
-  return options;
-}
-
-void ClassifyByDataAlone(const FitProblem& with, const FitPoint& estimate,
-                         const std::vector<std::string>& names, int num_threads,
-                         const JobProgress& progress, std::vector<Profile>* profiles) {
-  const FitOptions options = OfDataAlone(with.options());
-  const FitProblem alone(with.recordings(), options);
-  const double put_in = CostAt(with.WithoutRecordings(), estimate);
-  if (CostAt(alone.WithoutRecordings(), estimate) == put_in) return;
-  const SolveStart refit = Refit(alone, estimate);
-  if (!refit.usable) return;
-  const auto found = ClassifyProfiles(alone, refit.to, ComputeUncertainty(alone, refit.to), names,
-                                      num_threads, progress);
-  if (!found.ok()) return;
-  for (size_t i = 0; i < profiles->size(); ++i) (*profiles)[i].by_data_alone = found.value()[i];
-}
-
-}  // namespace
 
 MaybeError AddProfiles(const std::vector<PendulumRecording>& recordings,
                        const std::vector<std::string>& names, int num_threads,

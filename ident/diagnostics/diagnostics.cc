@@ -226,6 +226,19 @@ StartDiagnostics DiagnoseStart(const FitProblem& problem, const SolveStart& star
           FitFindings(FindingsOf(problem.recordings()))};
 }
 
+// The nominal point with every free gain multiplied by kNearby^u, u uniform in [-1, 1].
+FitPoint NearbyPoint(const FitProblem& problem) {
+  Random random(kNearbySeed);
+  FitPoint point = problem.NominalPoint();
+  for (size_t i = 0; i < point.shared.size(); ++i) {
+    const Transform transform = problem.map().fitted[i].transform;
+    const double natural =
+        ToNatural(transform, point.shared[i]) * std::pow(kNearby, random.Uniform(-1.0, 1.0));
+    point.shared[i] = ToFitted(transform, natural);
+  }
+  return point;
+}
+
 }  // namespace
 
 Diagnostics Diagnose(const FitProblem& problem, const SolveStart& best,
@@ -257,23 +270,6 @@ void HoldUnusedTail(const std::vector<PendulumRecording>& recordings, FitOptions
     options->table[id].free = options->table[id].pooled = false;
   }
 }
-
-namespace {
-
-// The nominal point with every free gain multiplied by kNearby^u, u uniform in [-1, 1].
-FitPoint NearbyPoint(const FitProblem& problem) {
-  Random random(kNearbySeed);
-  FitPoint point = problem.NominalPoint();
-  for (size_t i = 0; i < point.shared.size(); ++i) {
-    const Transform transform = problem.map().fitted[i].transform;
-    const double natural =
-        ToNatural(transform, point.shared[i]) * std::pow(kNearby, random.Uniform(-1.0, 1.0));
-    point.shared[i] = ToFitted(transform, natural);
-  }
-  return point;
-}
-
-}  // namespace
 
 MaybeError CheckEffects(const FitProblem& problem) {
   const FitPoint nominal = problem.NominalPoint();

@@ -215,36 +215,6 @@ void UnpoolLabel(FitOptions* options, Warnings* told) {
                   ", which would be pooled by the same label: not pooled");
 }
 
-}  // namespace
-
-MaybeError AddCovariates(const std::vector<PendulumRecording>& recordings, FitOptions* options,
-                         Warnings* told) {
-  if (options->contrast.empty() && options->covariates.empty()) return std::nullopt;
-  for (const ParameterSpec& spec : options->table.specs) {
-    if (spec.slope_of) return std::nullopt;
-  }
-  if (NeedsGradientTraining(*options)) {
-    return Error{std::string(options->contrast.empty() ? "--covariate" : "--contrast") +
-                 " does not go together with a network that is trained by its gradient"};
-  }
-  const Result<std::vector<CovariatesOfParameter>> chosen = ParseCovariates(options->covariates);
-  if (!chosen.ok()) return chosen.error();
-  UnpoolLabel(options, told);
-  SlopeRows rows(recordings, &options->table, options->preset_priors);
-  // Contrasts first: numbers are no targets of theirs.
-  if (!options->contrast.empty()) {
-    if (MaybeError error = rows.AddContrast(options->contrast)) return error;
-  }
-  for (const CovariatesOfParameter& one : chosen.value()) {
-    for (const std::string& key : one.keys) {
-      if (MaybeError error = rows.AddNumber(one.parameter, key)) return error;
-    }
-  }
-  return std::nullopt;
-}
-
-namespace {
-
 // Whether people can be told from their recordings.
 bool PeopleCanBeTold(const std::vector<PendulumRecording>& recordings) {
   std::map<std::string, int> times;
@@ -277,6 +247,32 @@ FitOptions WithPeopleApart(const FitResult& result) {
 }
 
 }  // namespace
+
+MaybeError AddCovariates(const std::vector<PendulumRecording>& recordings, FitOptions* options,
+                         Warnings* told) {
+  if (options->contrast.empty() && options->covariates.empty()) return std::nullopt;
+  for (const ParameterSpec& spec : options->table.specs) {
+    if (spec.slope_of) return std::nullopt;
+  }
+  if (NeedsGradientTraining(*options)) {
+    return Error{std::string(options->contrast.empty() ? "--covariate" : "--contrast") +
+                 " does not go together with a network that is trained by its gradient"};
+  }
+  const Result<std::vector<CovariatesOfParameter>> chosen = ParseCovariates(options->covariates);
+  if (!chosen.ok()) return chosen.error();
+  UnpoolLabel(options, told);
+  SlopeRows rows(recordings, &options->table, options->preset_priors);
+  // Contrasts first: numbers are no targets of theirs.
+  if (!options->contrast.empty()) {
+    if (MaybeError error = rows.AddContrast(options->contrast)) return error;
+  }
+  for (const CovariatesOfParameter& one : chosen.value()) {
+    for (const std::string& key : one.keys) {
+      if (MaybeError error = rows.AddNumber(one.parameter, key)) return error;
+    }
+  }
+  return std::nullopt;
+}
 
 void AddContrastEffects(const std::vector<PendulumRecording>& recordings, FitResult* result) {
   if (!result->contrast) return;

@@ -95,6 +95,33 @@ double ReadShare(const Json& json, const char* key) {
   return share;
 }
 
+Json SettingsJson(const TrainedNetworks& trained) {
+  Json json = JsonOf(trained.settings);
+  for (const PushKind kind : trained.settings.push_kinds) {
+    json["push_kinds"].push_back(NameOf(kind));
+  }
+  json.update(trained.of_kind->Settings());
+  return json;
+}
+
+TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
+  const Json& json = *folder.settings;
+  TrainedNetworks trained;
+  GeneratorSettings& settings = trained.settings;
+  ReadJson(json, &settings);
+  CheckLayout(settings.layout);
+  for (const Json& name : json.value("push_kinds", Json::array())) {
+    const std::optional<PushKind> kind = FromName<PushKind>(name.get<std::string>());
+    Demand(kind.has_value(), "push_kinds has " + name.dump() + ", which is not a kind of push");
+    settings.push_kinds.push_back(*kind);
+  }
+  settings.training = folder.training;
+  GeneratorKind kind{};
+  ParseName("kind", folder.kind, &kind);  // ReadTensorFolder has checked it
+  trained.of_kind = RowOf(kind).read(json, settings, reader);
+  return trained;
+}
+
 }  // namespace
 
 template <class Archive>
@@ -229,37 +256,6 @@ void Fields(Archive& a, GeneratorSettings& settings) {
   a.Check(settings.observed >= 1 && settings.predicted >= 1 && settings.rate > 0.0,
           "observed, predicted and rate_hz must be positive");
 }
-
-namespace {
-
-Json SettingsJson(const TrainedNetworks& trained) {
-  Json json = JsonOf(trained.settings);
-  for (const PushKind kind : trained.settings.push_kinds) {
-    json["push_kinds"].push_back(NameOf(kind));
-  }
-  json.update(trained.of_kind->Settings());
-  return json;
-}
-
-TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
-  const Json& json = *folder.settings;
-  TrainedNetworks trained;
-  GeneratorSettings& settings = trained.settings;
-  ReadJson(json, &settings);
-  CheckLayout(settings.layout);
-  for (const Json& name : json.value("push_kinds", Json::array())) {
-    const std::optional<PushKind> kind = FromName<PushKind>(name.get<std::string>());
-    Demand(kind.has_value(), "push_kinds has " + name.dump() + ", which is not a kind of push");
-    settings.push_kinds.push_back(*kind);
-  }
-  settings.training = folder.training;
-  GeneratorKind kind{};
-  ParseName("kind", folder.kind, &kind);  // ReadTensorFolder has checked it
-  trained.of_kind = RowOf(kind).read(json, settings, reader);
-  return trained;
-}
-
-}  // namespace
 
 MaybeError WriteGenerator(const std::string& folder, const TrainedNetworks& trained) {
   return WriteTensorFolder(kGeneratorFolder, folder,

@@ -100,6 +100,72 @@ Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& te
                "), or linear and a network, as linear,gru:4"};
 }
 
+// Rows [W b] of hidden layers.
+void AddHiddenWeights(const std::vector<int>& hidden, int inputs, uint64_t seed,
+                      std::vector<double>* weights) {
+  Random random(seed);
+  int width = inputs + 1;
+  for (int size : hidden) {
+    for (int i = 0; i < size * width; ++i) {
+      weights->push_back(random.Normal() / std::sqrt(width));
+    }
+    width = size + 1;
+  }
+}
+
+using Json = nlohmann::ordered_json;
+
+void CheckSizes(const std::string& what, const std::vector<int>& hidden) {
+  for (int size : hidden) {
+    if (size >= 1 && size <= kLargestSize) continue;
+    throw std::runtime_error(what + ": sizes must lie between 1 and " +
+                             std::to_string(kLargestSize));
+  }
+}
+
+void CheckRod(const RodShape& rod) {
+  const bool layers_fit =
+      rod.layered() ? !rod.hidden.empty() && rod.hidden.size() <= kMostLayers : rod.hidden.empty();
+  if (!layers_fit) throw std::runtime_error("rod: no " + NameOf(rod.kind) + " has so many layers");
+  CheckSizes("rod", rod.hidden);
+}
+
+void CheckPair(const PairShape& pair) {
+  if (!pair.any() || pair.hidden.size() > kMostLayers) {
+    throw std::runtime_error("interaction: a network has one to " + std::to_string(kMostLayers) +
+                             " hidden layers");
+  }
+  CheckSizes("interaction", pair.hidden);
+}
+
+// What options of networks ask for that there is not; empty: nothing.
+std::string MissingNetwork(const FitOptions& o) {
+  const auto& network = o.model.learned;
+  const bool pair = network != nullptr && network->pair.any();
+  if (o.model.interaction.learned_in_range != (pair && network->pair.ldp)) {
+    return "--interaction names another network between people than there is";
+  }
+  if (o.model.interaction.learned != pair) {
+    return pair ? "a network between people is there, but --interaction does not name network:SIZES"
+                : "--interaction names a network to be fitted, but there is none; name its layers, "
+                  "as in --interaction=spring,damping,network:4";
+  }
+  return "";
+}
+
+// What feet that hold cannot do together with the rest; empty: nothing.
+std::string StanceViolation(const FitOptions& o) {
+  if (o.model.stance == Stance::kSlide) return "";
+  const char* sliding = RodMoves(o.model)          ? "--rod"
+                        : NeedsGradientTraining(o) ? "a network that is trained by its gradient"
+                        : o.model.push != PushUse::kAsRecorded             ? "a push that is added"
+                        : o.model.cart_derivative != CartDerivative::kNone ? "the cart's derivative"
+                                                                           : nullptr;
+  if (sliding == nullptr) return "";
+  return std::string(sliding) + " is for feet that slide and does not go together with --stance=" +
+         NameOf(o.model.stance) + "; drop one of the two";
+}
+
 }  // namespace
 
 std::vector<std::string> NetworkExamples() {
@@ -216,23 +282,6 @@ std::vector<double> InitialWeights(const NetworkShape& shape, uint64_t seed) {
   return weights;
 }
 
-namespace {
-
-// Rows [W b] of hidden layers.
-void AddHiddenWeights(const std::vector<int>& hidden, int inputs, uint64_t seed,
-                      std::vector<double>* weights) {
-  Random random(seed);
-  int width = inputs + 1;
-  for (int size : hidden) {
-    for (int i = 0; i < size * width; ++i) {
-      weights->push_back(random.Normal() / std::sqrt(width));
-    }
-    width = size + 1;
-  }
-}
-
-}  // namespace
-
 std::shared_ptr<const LearnedTerms> InitialNetwork(const NetworkShape& shape, uint64_t seed,
                                                    const RodShape& rod, const PairShape& pair) {
   LearnedTerms network{shape, InitialWeights(shape, seed), rod, pair};
@@ -242,35 +291,6 @@ std::shared_ptr<const LearnedTerms> InitialNetwork(const NetworkShape& shape, ui
   network.weights.resize(network.num_weights(), 0.0);
   return std::make_shared<const LearnedTerms>(std::move(network));
 }
-
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-void CheckSizes(const std::string& what, const std::vector<int>& hidden) {
-  for (int size : hidden) {
-    if (size >= 1 && size <= kLargestSize) continue;
-    throw std::runtime_error(what + ": sizes must lie between 1 and " +
-                             std::to_string(kLargestSize));
-  }
-}
-
-void CheckRod(const RodShape& rod) {
-  const bool layers_fit =
-      rod.layered() ? !rod.hidden.empty() && rod.hidden.size() <= kMostLayers : rod.hidden.empty();
-  if (!layers_fit) throw std::runtime_error("rod: no " + NameOf(rod.kind) + " has so many layers");
-  CheckSizes("rod", rod.hidden);
-}
-
-void CheckPair(const PairShape& pair) {
-  if (!pair.any() || pair.hidden.size() > kMostLayers) {
-    throw std::runtime_error("interaction: a network has one to " + std::to_string(kMostLayers) +
-                             " hidden layers");
-  }
-  CheckSizes("interaction", pair.hidden);
-}
-
-}  // namespace
 
 PUSHID_FIELDS_OF(RodShape, kind, hidden)
 
@@ -320,38 +340,6 @@ std::shared_ptr<const LearnedTerms> LearnedFromJson(const Json& json) {
   return network;
 }
 
-namespace {
-
-// What options of networks ask for that there is not; empty: nothing.
-std::string MissingNetwork(const FitOptions& o) {
-  const auto& network = o.model.learned;
-  const bool pair = network != nullptr && network->pair.any();
-  if (o.model.interaction.learned_in_range != (pair && network->pair.ldp)) {
-    return "--interaction names another network between people than there is";
-  }
-  if (o.model.interaction.learned != pair) {
-    return pair ? "a network between people is there, but --interaction does not name network:SIZES"
-                : "--interaction names a network to be fitted, but there is none; name its layers, "
-                  "as in --interaction=spring,damping,network:4";
-  }
-  return "";
-}
-
-// What feet that hold cannot do together with the rest; empty: nothing.
-std::string StanceViolation(const FitOptions& o) {
-  if (o.model.stance == Stance::kSlide) return "";
-  const char* sliding = RodMoves(o.model)          ? "--rod"
-                        : NeedsGradientTraining(o) ? "a network that is trained by its gradient"
-                        : o.model.push != PushUse::kAsRecorded             ? "a push that is added"
-                        : o.model.cart_derivative != CartDerivative::kNone ? "the cart's derivative"
-                                                                           : nullptr;
-  if (sliding == nullptr) return "";
-  return std::string(sliding) + " is for feet that slide and does not go together with --stance=" +
-         NameOf(o.model.stance) + "; drop one of the two";
-}
-
-}  // namespace
-
 bool FitOptions::IsValid(std::string* error) const {
   for (const FitOptionRow& row : AllOptionRows()) {
     const std::string violated = row.violation ? row.violation(*this) : "";
@@ -375,8 +363,6 @@ bool IsLarge(const FitOptions& options) {
 PUSHID_FIELDS_OF(Prior, mean, sigma)
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // Options of earlier versions, and their values that did nothing or are those of now. A model that
 // has these can still be read.
@@ -449,14 +435,10 @@ Json OptionsJson(const FitOptions& options) {
   return json;
 }
 
-void AddLawNames(const ModelOptions& model, Json* json) {
-  const std::vector<std::string> laws = LawNames(model);
-  if (!laws.empty()) (*json)["force_laws"] = laws;
-}
-
 Json SettingsJson(const FitOptions& options) {
   Json json = {{"model", OptionsJson(options)}, {"table", TableJson(options.table)}};
-  AddLawNames(options.model, &json);
+  const std::vector<std::string> laws = LawNames(options.model);
+  if (!laws.empty()) json["force_laws"] = laws;
   return json;
 }
 

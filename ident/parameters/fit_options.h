@@ -165,10 +165,8 @@ inline bool NeedsGradientTraining(const FitOptions& options) {
 // As JSON: the options, and the parameter table.
 nlohmann::ordered_json OptionsJson(const FitOptions& options);
 nlohmann::ordered_json TableJson(const ParameterTable& table);
-// A user's own laws are named ("force_laws"), so that a reader knows what to ask for; they cannot
-// be written.
-void AddLawNames(const ModelOptions& model, nlohmann::ordered_json* json);
-// All three: everything that decides what a fit of given recordings finds.
+// Both: everything that decides what a fit of given recordings finds. A user's own laws are named
+// ("force_laws"), so that a reader knows what to ask for; they cannot be written.
 nlohmann::ordered_json SettingsJson(const FitOptions& options);
 
 // Throw what nlohmann's JSON throws for what is missing or of another type, and std::runtime_error

@@ -14,6 +14,19 @@
 namespace pushid {
 namespace {
 
+// A start, and the sigma of a weak prior about it.
+struct WeakStart {
+  Parameter id;
+  double value, sigma;
+};
+
+void FreeFrom(const WeakStart& start, ParameterTable* table) {
+  ParameterSpec& spec = (*table)[start.id];
+  spec.free = true;
+  spec.nominal = start.value;
+  spec.prior = Prior{start.value, start.sigma};
+}
+
 FitOptions TailPreset() {
   FitOptions o;
   o.preset = "tail";
@@ -95,6 +108,56 @@ FitOptions RobotPreset() {
   return o;
 }
 
+constexpr char kLdpPublished[] = "ldp_published", kLdpPublishedGroups[] = "ldp_published_groups";
+constexpr double kCartGainPerFrame = 4.0, kAngleGainPerFrame = 200.0;  // Kd
+
+// Plain PD balance and one friction, from upright (Yue et al., CVPR 2024). Kd is 200 N m per frame
+// of 1/60 s in the paper and in its code, hence 200 / 60 N m s/rad; to read it as SI, use
+// --fix=Kd_theta=200,Kd_phi=200.
+FitOptions LdpPreset() {
+  FitOptions o;
+  o.preset = "ldp";
+  o.table = BaseTable();
+  o.table[kKpX].nominal = o.table[kKpY].nominal = 30;
+  o.table[kKdTheta].nominal = o.table[kKdPhi].nominal = kAngleGainPerFrame / kLdpRate;
+  for (Parameter id : {kMu, kKpTheta, kKpPhi, kKdTheta, kKdPhi}) o.table[id].free = true;
+  o.model.posture = Posture::kUpright;
+  o.model.gain_scaling = GainScaling::kNone;
+  o.model.push = PushUse::kAsRecorded;
+  o.model.push_tail = PushTail::kNone;
+  return o;
+}
+
+// LDP as published: one force law at all times, to which the push is added; all networks in their
+// sizes, trained together with mu by LDP's loss; gains, potential and torques as they are given.
+// The carts' Kd of 4 per frame acts on backward differences, as in LDP's code. Every frame counts
+// as one.
+FitOptions LdpPublishedPreset() {
+  FitOptions o = LdpPreset();
+  o.preset = kLdpPublished;
+  for (Parameter id : {kKpTheta, kKpPhi, kKdTheta, kKdPhi}) o.table[id].free = false;
+  o.table[kKdX].nominal = o.table[kKdY].nominal = kCartGainPerFrame / kLdpRate;
+  o.model.cart_derivative = CartDerivative::kBackward;
+  o.model.push = PushUse::kAdded;
+  o.model.learned =
+      InitialNetwork({NetworkKind::kLdp, 256, 32}, o.seed, {RodKind::kLdp, {128, 128}});
+  o.sigmas = kLdpSigmas;
+  o.estimate_weights = false;
+  o.effective_weight = 1.0;
+  o.network_prior = 0.0;
+  return o;
+}
+
+FitOptions LdpPublishedGroupsPreset() {
+  FitOptions o = LdpPublishedPreset();
+  o.preset = kLdpPublishedGroups;
+  o.model.interaction.ldp_published = true;
+  o.model.interaction.learned = o.model.interaction.learned_in_range = true;
+  const LearnedTerms& alone = *o.model.learned;
+  o.model.learned = InitialNetwork(alone.shape, o.seed, alone.rod, PairShape{{512, 512}, true});
+  return o;
+}
+
 // Where people stand and how they are pushed differ between settings, not their bodies: with gains
 // of their own settings do not settle, and are predicted worse.
 constexpr char kPooledWhereFeetStep[] =
@@ -139,6 +202,72 @@ void FreeByTerm(const ModelOptions& model, ParameterTable* table) {
     spec.free = true;
     spec.prior = Prior{spec.nominal, std::abs(spec.nominal)};
   }
+}
+
+// Sideways as forwards, but for what a flag names.
+void TieSideways(FitOptions* o) {
+  for (const SidewaysParameter& pair : kSidewaysParameters) {
+    ParameterSpec& spec = o->table[pair.sideways];
+    spec.tied_to.reset();
+    if (o->model.directions != Directions::kIsotropic || spec.named) continue;
+    spec.tied_to = pair.forward;
+    spec.free = spec.pooled = false;
+  }
+}
+
+// Sideways free where forwards is, from the same start.
+void FreeSideways(FitOptions* o) {
+  if (o->model.directions != Directions::kBody) return;
+  for (const SidewaysParameter& pair : kSidewaysParameters) {
+    const ParameterSpec& forward = o->table[pair.forward];
+    ParameterSpec& sideways = o->table[pair.sideways];
+    if (!forward.free || sideways.free || sideways.named) continue;
+    sideways.free = true;
+    sideways.nominal = forward.nominal;
+    sideways.prior = forward.prior;
+  }
+}
+
+// One passive share, unless that of the damping is named: apart, it and the damping hardly are.
+void TiePassive(FitOptions* o) {
+  ParameterSpec& damping = o->table[kPassiveDamping];
+  if (o->model.delay == Delay::kNone || damping.named) return;
+  damping.tied_to = kPassiveStiffness;
+  damping.free = damping.pooled = false;
+}
+
+// The noise that a likelihood of single steps tells of, without priors: it is seen thousands of
+// times.
+void FreeNoise(FitOptions* o) {
+  if (o->likelihood == Likelihood::kTrajectory) return;
+  for (int id = kFirstNoiseParameter; id <= kLastNoiseParameter; ++id) {
+    const bool of_measurement = IsMeasurementError(static_cast<Parameter>(id));
+    if (of_measurement && o->likelihood != Likelihood::kInnovation) continue;
+    o->table.specs[id].free = Acts(static_cast<Parameter>(id), o->model);
+  }
+}
+
+// Share of the pushes beyond which everybody moves. In the published recordings of single people 30
+// of 32 step, in those of groups 48 of the 49 who are pushed.
+constexpr double kEverybody = 0.75;
+
+std::string OfAll(const PushedFeet& feet) {
+  return std::to_string(feet.moved) + " of " + std::to_string(feet.seen) + " pushes";
+}
+
+// Whether both feet go at once, over at least half of the longer step's time: they slide, as
+// nobody's who steps do.
+bool Glide(const FootStep& a, const FootStep& b) {
+  const int both = std::min(a.landing, b.landing) - std::max(a.lift_off, b.lift_off);
+  return a.foot != b.foot && 2 * both > std::max(a.landing - a.lift_off, b.landing - b.lift_off);
+}
+
+bool LiftsAFoot(const PersonSteps& person) {
+  const std::vector<FootStep>& steps = person.steps;
+  return std::any_of(steps.begin(), steps.end(), [&steps](const FootStep& one) {
+    return std::none_of(steps.begin(), steps.end(),
+                        [&one](const FootStep& other) { return Glide(one, other); });
+  });
 }
 
 }  // namespace
@@ -186,21 +315,6 @@ std::string MemoryOf(const ModelOptions& model) {
   return "";
 }
 
-namespace {
-
-// The noise that a likelihood of single steps tells of, without priors: it is seen thousands of
-// times.
-void FreeNoise(FitOptions* o) {
-  if (o->likelihood == Likelihood::kTrajectory) return;
-  for (int id = kFirstNoiseParameter; id <= kLastNoiseParameter; ++id) {
-    const bool of_measurement = IsMeasurementError(static_cast<Parameter>(id));
-    if (of_measurement && o->likelihood != Likelihood::kInnovation) continue;
-    o->table.specs[id].free = Acts(static_cast<Parameter>(id), o->model);
-  }
-}
-
-}  // namespace
-
 void SetLikelihood(Likelihood likelihood, FitOptions* options) {
   options->likelihood = likelihood;
   if (likelihood == Likelihood::kTrajectory) return;
@@ -242,30 +356,6 @@ Result<FitOptions> MakePreset(const std::string& name) {
   return options;
 }
 
-// Sideways as forwards, but for what a flag names.
-void TieSideways(FitOptions* o) {
-  for (const SidewaysParameter& pair : kSidewaysParameters) {
-    ParameterSpec& spec = o->table[pair.sideways];
-    spec.tied_to.reset();
-    if (o->model.directions != Directions::kIsotropic || spec.named) continue;
-    spec.tied_to = pair.forward;
-    spec.free = spec.pooled = false;
-  }
-}
-
-// Sideways free where forwards is, from the same start.
-void FreeSideways(FitOptions* o) {
-  if (o->model.directions != Directions::kBody) return;
-  for (const SidewaysParameter& pair : kSidewaysParameters) {
-    const ParameterSpec& forward = o->table[pair.forward];
-    ParameterSpec& sideways = o->table[pair.sideways];
-    if (!forward.free || sideways.free || sideways.named) continue;
-    sideways.free = true;
-    sideways.nominal = forward.nominal;
-    sideways.prior = forward.prior;
-  }
-}
-
 void FreeTerms(FitOptions* o) {
   FreeSelfForce(o->self_force, &o->table);
   FreeByTerm(o->model, &o->table);
@@ -294,15 +384,6 @@ MaybeError PoolParameters(FitOptions* o) {
   return EditTable(edits, &o->table);
 }
 
-// What a laboratory's model frees.
-
-void FreeFrom(const WeakStart& start, ParameterTable* table) {
-  ParameterSpec& spec = (*table)[start.id];
-  spec.free = true;
-  spec.nominal = start.value;
-  spec.prior = Prior{start.value, start.sigma};
-}
-
 void SetBody(BodyModel body, FitOptions* options) {
   options->model.body = body;
   if (body != BodyModel::kTable) return;
@@ -324,88 +405,6 @@ void SetDelay(Delay delay, FitOptions* options) {
     FreeFrom(start, &options->table);
   }
 }
-
-void TiePassive(FitOptions* o) {
-  ParameterSpec& damping = o->table[kPassiveDamping];
-  if (o->model.delay == Delay::kNone || damping.named) return;
-  damping.tied_to = kPassiveStiffness;
-  damping.free = damping.pooled = false;
-}
-
-// LDP.
-
-namespace {
-
-constexpr double kCartGainPerFrame = 4.0, kAngleGainPerFrame = 200.0;  // Kd
-
-}  // namespace
-
-FitOptions LdpPreset() {
-  FitOptions o;
-  o.preset = "ldp";
-  o.table = BaseTable();
-  o.table[kKpX].nominal = o.table[kKpY].nominal = 30;
-  o.table[kKdTheta].nominal = o.table[kKdPhi].nominal = kAngleGainPerFrame / kLdpRate;
-  for (Parameter id : {kMu, kKpTheta, kKpPhi, kKdTheta, kKdPhi}) o.table[id].free = true;
-  o.model.posture = Posture::kUpright;
-  o.model.gain_scaling = GainScaling::kNone;
-  o.model.push = PushUse::kAsRecorded;
-  o.model.push_tail = PushTail::kNone;
-  return o;
-}
-
-FitOptions LdpPublishedPreset() {
-  FitOptions o = LdpPreset();
-  o.preset = kLdpPublished;
-  for (Parameter id : {kKpTheta, kKpPhi, kKdTheta, kKdPhi}) o.table[id].free = false;
-  o.table[kKdX].nominal = o.table[kKdY].nominal = kCartGainPerFrame / kLdpRate;
-  o.model.cart_derivative = CartDerivative::kBackward;
-  o.model.push = PushUse::kAdded;
-  o.model.learned =
-      InitialNetwork({NetworkKind::kLdp, 256, 32}, o.seed, {RodKind::kLdp, {128, 128}});
-  o.sigmas = kLdpSigmas;
-  o.estimate_weights = false;
-  o.effective_weight = 1.0;
-  o.network_prior = 0.0;
-  return o;
-}
-
-FitOptions LdpPublishedGroupsPreset() {
-  FitOptions o = LdpPublishedPreset();
-  o.preset = kLdpPublishedGroups;
-  o.model.interaction.ldp_published = true;
-  o.model.interaction.learned = o.model.interaction.learned_in_range = true;
-  const LearnedTerms& alone = *o.model.learned;
-  o.model.learned = InitialNetwork(alone.shape, o.seed, alone.rod, PairShape{{512, 512}, true});
-  return o;
-}
-
-namespace {
-
-// Share of the pushes beyond which everybody moves. In the published recordings of single people 30
-// of 32 step, in those of groups 48 of the 49 who are pushed.
-constexpr double kEverybody = 0.75;
-
-std::string OfAll(const PushedFeet& feet) {
-  return std::to_string(feet.moved) + " of " + std::to_string(feet.seen) + " pushes";
-}
-
-// Whether both feet go at once, over at least half of the longer step's time: they slide, as
-// nobody's who steps do.
-bool Glide(const FootStep& a, const FootStep& b) {
-  const int both = std::min(a.landing, b.landing) - std::max(a.lift_off, b.lift_off);
-  return a.foot != b.foot && 2 * both > std::max(a.landing - a.lift_off, b.landing - b.lift_off);
-}
-
-bool LiftsAFoot(const PersonSteps& person) {
-  const std::vector<FootStep>& steps = person.steps;
-  return std::any_of(steps.begin(), steps.end(), [&steps](const FootStep& one) {
-    return std::none_of(steps.begin(), steps.end(),
-                        [&one](const FootStep& other) { return Glide(one, other); });
-  });
-}
-
-}  // namespace
 
 PushedFeet FeetOf(const std::vector<PendulumRecording>& recordings) {
   PushedFeet feet;

@@ -86,42 +86,13 @@ std::string MemoryOf(const ModelOptions& model);
 // can feed a mode that the settling simulations do not excite.
 void SetSelfForce(SelfForceKind self_force, FitOptions* options);
 
-// What a laboratory's model frees: reaction delays, bodies of their own.
-
-// A start, and the sigma of a weak prior about it.
-struct WeakStart {
-  Parameter id;
-  double value, sigma;
-};
-void FreeFrom(const WeakStart& start, ParameterTable* table);
-
 // Masses by the table: the point at the hip to start from, nothing free.
 void SetBody(BodyModel body, FitOptions* options);
 
 // With a delay its parameters are free, with weak priors.
 void SetDelay(Delay delay, FitOptions* options);
 
-// One passive share, unless that of the damping is named: apart, it and the damping hardly are.
-void TiePassive(FitOptions* options);
-
-// Settings of Yue et al., Human Motion Prediction Under Unexpected Perturbation, CVPR 2024,
-// before FreeTerms (presets.h).
-
 inline constexpr double kLdpRate = 60.0;  // Hz: LDP counts Kd per frame
-inline constexpr char kLdpPublished[] = "ldp_published";
-inline constexpr char kLdpPublishedGroups[] = "ldp_published_groups";
-
-// Plain PD balance and one friction, from upright. Kd is 200 N m per frame of 1/60 s in the paper
-// and in its code, hence 200 / 60 N m s/rad; to read it as SI, use
-// --fix=Kd_theta=200,Kd_phi=200.
-FitOptions LdpPreset();
-
-// LDP as published: one force law at all times, to which the push is added; all networks in their
-// sizes, trained together with mu by LDP's loss; gains, potential and torques as they are given.
-// The carts' Kd of 4 per frame acts on backward differences, as in LDP's code. Every frame counts
-// as one.
-FitOptions LdpPublishedPreset();
-FitOptions LdpPublishedGroupsPreset();
 
 // What the feet of pushed people did, and which stance a fit takes from that.
 //

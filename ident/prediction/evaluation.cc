@@ -115,6 +115,98 @@ HipPaths GoneOn(const PendulumRecording& recording, int observed, const Ahead& a
   return paths;
 }
 
+// Mean errors over frames, weighted as the recording has them.
+struct WeightedError {
+  double sum = 0.0, weight = 0.0;
+  void Add(double w, double error) { sum += w * error, weight += w; }
+  double Mean() const { return weight > 0.0 ? sum / weight : 0.0; }
+};
+
+StepTiming TimingOf(const PendulumRecording& recording, const Prediction& prediction, int person) {
+  const double dt = recording.scene.dt;
+  StepTiming timing;
+  if (const FootStep* first = recording.steps[person].First()) {
+    timing.recorded_lift_off = first->lift_off * dt;
+    if (first->finished) timing.recorded_travel = first->travel;
+  }
+  const std::vector<FootStep> steps = PredictedSteps(prediction.path, person);
+  if (steps.empty()) return timing;
+  timing.lift_off = steps.front().lift_off * dt;
+  if (steps.front().finished) timing.landing = steps.front().landing * dt;
+  timing.travel = steps.front().travel;
+  return timing;
+}
+
+// How much harder and longer people are pushed and watched than they were.
+constexpr double kStrongerPush = 1.4;
+constexpr int kFramesPastTheEnd = 40;
+
+RecordingScore FailedScore(const PendulumRecording& recording, const std::string& failure) {
+  RecordingScore score;
+  score.id = recording.id;
+  score.frames = recording.num_frames();
+  score.fell = true;
+  score.failure = failure;
+  return score;
+}
+
+RecordingScore ScoreOf(const IdentifiedModel& model, const PendulumRecording& recording,
+                       const Prediction& prediction, int observed) {
+  if (!prediction.status.ok) return FailedScore(recording, OutsideText(prediction.status));
+  RecordingScore score = ScoreHip(recording, prediction.hip, observed);
+  AddContactFigures(model, recording, prediction, &score.propagation);
+  score.fell = AnybodyFalls(prediction);
+  score.steps = StepPredictions(recording, prediction);
+  return score;
+}
+
+// inside: whether a value at a frame, of the hip's x or y, lies in the central share.
+template <typename Inside, typename CrpsOf>
+void AddBands(const PendulumRecording& recording, int from, const Inside& inside,
+              const CrpsOf& crps, RecordingScore* score) {
+  const int person = recording.pushed_person;
+  double frames = 0.0;
+  for (int t = from; t < recording.num_frames(); ++t) {
+    if (recording.Weight(person, t) == 0.0) continue;
+    frames += 1.0;
+    for (int axis : {0, 1}) {
+      const double value = recording.hip[person][t][axis];
+      score->value[kInside90 + axis] += inside(t, axis, value, 0.9);
+      score->value[kInside50 + axis] += inside(t, axis, value, 0.5);
+      score->value[kCrps] += 0.5 * crps(t, axis, value);
+    }
+  }
+  if (frames > 0.0) score->value.segment<kCrps + 1 - kInside90>(kInside90) /= frames;
+}
+
+MeanScore Mean(const ScoreList& scores, bool by_frames, bool shares_first) {
+  MeanScore mean;
+  mean.recordings = static_cast<int>(scores.size());
+  if (scores.empty()) return mean;
+  const auto weight = [by_frames](const Score* s) {
+    return by_frames ? s->frames - s->first_frame : 1.0;
+  };
+  double total = 0.0;
+  for (const Score* s : scores) total += weight(s);
+  const ScoreClusters clusters = ClustersOf(scores);
+  mean.clustered_by = clusters.by;
+  mean.clusters = clusters.count;
+  const double first = shares_first ? total : 1.0, last = shares_first ? 1.0 : total;
+  for (const Score* s : scores) mean.value += weight(s) / first * s->value;
+  mean.value /= last;
+  std::vector<Metrics> deviations;
+  for (const Score* s : scores) deviations.push_back(weight(s) / total * (s->value - mean.value));
+  mean.error = clusters.ErrorOfMean(deviations);
+  return mean;
+}
+
+ScoreList Scored(const ScoreList& scores) {
+  ScoreList scored;
+  std::copy_if(scores.begin(), scores.end(), std::back_inserter(scored),
+               [](const Score* score) { return score->failure.empty(); });
+  return scored;
+}
+
 }  // namespace
 
 HipPaths StaticBaseline(const PendulumRecording& recording, int observed) {
@@ -160,17 +252,6 @@ MetricList MetricsOf(int observed, bool bands) {
   return metrics;
 }
 
-namespace {
-
-// Mean errors over frames, weighted as the recording has them.
-struct WeightedError {
-  double sum = 0.0, weight = 0.0;
-  void Add(double w, double error) { sum += w * error, weight += w; }
-  double Mean() const { return weight > 0.0 ? sum / weight : 0.0; }
-};
-
-}  // namespace
-
 RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& predicted,
                         int observed) {
   RecordingScore score;
@@ -203,25 +284,6 @@ RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& pred
   if (people > 1) score.predicted = predicted;
   return score;
 }
-
-namespace {
-
-StepTiming TimingOf(const PendulumRecording& recording, const Prediction& prediction, int person) {
-  const double dt = recording.scene.dt;
-  StepTiming timing;
-  if (const FootStep* first = recording.steps[person].First()) {
-    timing.recorded_lift_off = first->lift_off * dt;
-    if (first->finished) timing.recorded_travel = first->travel;
-  }
-  const std::vector<FootStep> steps = PredictedSteps(prediction.path, person);
-  if (steps.empty()) return timing;
-  timing.lift_off = steps.front().lift_off * dt;
-  if (steps.front().finished) timing.landing = steps.front().landing * dt;
-  timing.travel = steps.front().travel;
-  return timing;
-}
-
-}  // namespace
 
 bool AnybodyFalls(const Prediction& prediction) {
   for (int t = 0; t < prediction.path.num_frames(); ++t) {
@@ -260,48 +322,6 @@ MaybeError CheckObserved(const std::vector<PendulumRecording>& recordings, int o
   }
   return std::nullopt;
 }
-
-namespace {
-
-RecordingScore FailedScore(const PendulumRecording& recording, const std::string& failure) {
-  RecordingScore score;
-  score.id = recording.id;
-  score.frames = recording.num_frames();
-  score.fell = true;
-  score.failure = failure;
-  return score;
-}
-
-RecordingScore ScoreOf(const IdentifiedModel& model, const PendulumRecording& recording,
-                       const Prediction& prediction, int observed) {
-  if (!prediction.status.ok) return FailedScore(recording, OutsideText(prediction.status));
-  RecordingScore score = ScoreHip(recording, prediction.hip, observed);
-  AddContactFigures(model, recording, prediction, &score.propagation);
-  score.fell = AnybodyFalls(prediction);
-  score.steps = StepPredictions(recording, prediction);
-  return score;
-}
-
-// inside: whether a value at a frame, of the hip's x or y, lies in the central share.
-template <typename Inside, typename CrpsOf>
-void AddBands(const PendulumRecording& recording, int from, const Inside& inside,
-              const CrpsOf& crps, RecordingScore* score) {
-  const int person = recording.pushed_person;
-  double frames = 0.0;
-  for (int t = from; t < recording.num_frames(); ++t) {
-    if (recording.Weight(person, t) == 0.0) continue;
-    frames += 1.0;
-    for (int axis : {0, 1}) {
-      const double value = recording.hip[person][t][axis];
-      score->value[kInside90 + axis] += inside(t, axis, value, 0.9);
-      score->value[kInside50 + axis] += inside(t, axis, value, 0.5);
-      score->value[kCrps] += 0.5 * crps(t, axis, value);
-    }
-  }
-  if (frames > 0.0) score->value.segment<kCrps + 1 - kInside90>(kInside90) /= frames;
-}
-
-}  // namespace
 
 void ScoreDraws(const PendulumRecording& recording, const DrawnPaths& draws,
                 RecordingScore* score) {
@@ -355,14 +375,6 @@ RecordingScore ScoreReanchored(const IdentifiedModel& model, const PendulumRecor
   const Prediction prediction = PredictReanchored(model, recording, observed);
   return ScoreOf(model, recording, prediction, observed);
 }
-
-namespace {
-
-// How much harder and longer people are pushed and watched than they were.
-constexpr double kStrongerPush = 1.4;
-constexpr int kFramesPastTheEnd = 40;
-
-}  // namespace
 
 bool FallsWhenPushedHarder(const IdentifiedModel& model, const PendulumRecording& recording) {
   PendulumRecording harder = recording;
@@ -492,38 +504,6 @@ WithoutLabel CountWithoutLabel(const std::vector<PendulumRecording>& recordings,
   }
   return counts;
 }
-
-namespace {
-
-MeanScore Mean(const ScoreList& scores, bool by_frames, bool shares_first) {
-  MeanScore mean;
-  mean.recordings = static_cast<int>(scores.size());
-  if (scores.empty()) return mean;
-  const auto weight = [by_frames](const Score* s) {
-    return by_frames ? s->frames - s->first_frame : 1.0;
-  };
-  double total = 0.0;
-  for (const Score* s : scores) total += weight(s);
-  const ScoreClusters clusters = ClustersOf(scores);
-  mean.clustered_by = clusters.by;
-  mean.clusters = clusters.count;
-  const double first = shares_first ? total : 1.0, last = shares_first ? 1.0 : total;
-  for (const Score* s : scores) mean.value += weight(s) / first * s->value;
-  mean.value /= last;
-  std::vector<Metrics> deviations;
-  for (const Score* s : scores) deviations.push_back(weight(s) / total * (s->value - mean.value));
-  mean.error = clusters.ErrorOfMean(deviations);
-  return mean;
-}
-
-ScoreList Scored(const ScoreList& scores) {
-  ScoreList scored;
-  std::copy_if(scores.begin(), scores.end(), std::back_inserter(scored),
-               [](const Score* score) { return score->failure.empty(); });
-  return scored;
-}
-
-}  // namespace
 
 ScoreMeans MeansOf(const std::vector<PendulumRecording>& recordings, const ScoreList& scores,
                    const LabelKeys& group_by, bool shares_first) {

@@ -93,6 +93,49 @@ PathBand QuantilesOf(const DrawnPaths& draws, int person) {
   return band;
 }
 
+bool StepsAreSpread(const IdentifiedModel& model) {
+  return model.options.stance == Stance::kSteps && model.step_probability &&
+         model.step_probability->coefficients[1] > 0.0;
+}
+
+// A person steps if the support is smaller than f b, which has the probability At(margin).
+void DrawSupport(const StepProbability& p, Random* random, ParameterSet<double>* own) {
+  const double u = random->Unit();
+  const double margin = (std::log(u / (1.0 - u)) - p.coefficients[0]) / p.coefficients[1];
+  const double factor = FactorAtMargin((*own)[kSupportFront], margin);
+  for (Parameter id : {kSupportFront, kSupportBack, kSupportSide}) (*own)[id] *= factor;
+}
+
+// By the drawn parameters until a foot leaves the ground, then by the person's own: what is drawn
+// is whether there is a first step, and who went on with a support of millimetres would march.
+RolloutStatus RollDrawn(const Scene& scene, const ModelOptions& options,
+                        std::vector<ParameterSet<double>> now,
+                        const std::vector<ParameterSet<double>>& own,
+                        const FrameTable<Vector4<double>>* noise, RolloutPath<double>* path) {
+  ModelStep<double> forces(scene, options, now);
+  StartPath(scene, InitialVelocities(scene), path);
+  for (int t = 0; t + 1 < path->num_frames(); ++t) {
+    const RolloutStatus status = StepOn<double>(scene, &forces, t, path, nullptr, noise);
+    if (!status.ok) return status;
+    for (int n = 0; n < scene.num_people(); ++n) {
+      if (path->At(t + 1, n).feet.swings != 0) now[n] = own[n];
+    }
+  }
+  return {};
+}
+
+// "0: 0.05, 1: 0.62, 2: 0.33"
+std::string StepShares(const Futures& futures, size_t person) {
+  std::map<int, int> counts;
+  for (const std::vector<int>& draw : futures.steps) ++counts[draw[person]];
+  std::string text;
+  for (const auto& [steps, count] : counts) {
+    text += (text.empty() ? "" : ", ") + std::to_string(steps) + ": " +
+            Rounded(count / static_cast<double>(futures.steps.size()), 2);
+  }
+  return text;
+}
+
 }  // namespace
 
 IdentifiedModel WithShared(const IdentifiedModel& model, const ParameterSet<double>& shared) {
@@ -218,41 +261,6 @@ PredictiveBands ComputeBands(const FitResult& result,
   return bands;
 }
 
-namespace {
-
-bool StepsAreSpread(const IdentifiedModel& model) {
-  return model.options.stance == Stance::kSteps && model.step_probability &&
-         model.step_probability->coefficients[1] > 0.0;
-}
-
-// A person steps if the support is smaller than f b, which has the probability At(margin).
-void DrawSupport(const StepProbability& p, Random* random, ParameterSet<double>* own) {
-  const double u = random->Unit();
-  const double margin = (std::log(u / (1.0 - u)) - p.coefficients[0]) / p.coefficients[1];
-  const double factor = FactorAtMargin((*own)[kSupportFront], margin);
-  for (Parameter id : {kSupportFront, kSupportBack, kSupportSide}) (*own)[id] *= factor;
-}
-
-// By the drawn parameters until a foot leaves the ground, then by the person's own: what is drawn
-// is whether there is a first step, and who went on with a support of millimetres would march.
-RolloutStatus RollDrawn(const Scene& scene, const ModelOptions& options,
-                        std::vector<ParameterSet<double>> now,
-                        const std::vector<ParameterSet<double>>& own,
-                        const FrameTable<Vector4<double>>* noise, RolloutPath<double>* path) {
-  ModelStep<double> forces(scene, options, now);
-  StartPath(scene, InitialVelocities(scene), path);
-  for (int t = 0; t + 1 < path->num_frames(); ++t) {
-    const RolloutStatus status = StepOn<double>(scene, &forces, t, path, nullptr, noise);
-    if (!status.ok) return status;
-    for (int n = 0; n < scene.num_people(); ++n) {
-      if (path->At(t + 1, n).feet.swings != 0) now[n] = own[n];
-    }
-  }
-  return {};
-}
-
-}  // namespace
-
 uint64_t SeedOfRecording(uint64_t seed, int recording) {
   return seed * 1000003u + static_cast<uint64_t>(recording);
 }
@@ -313,22 +321,6 @@ Result<Futures> DrawFutures(const IdentifiedModel& model, const PendulumRecordin
   }
   return futures;
 }
-
-namespace {
-
-// "0: 0.05, 1: 0.62, 2: 0.33"
-std::string StepShares(const Futures& futures, size_t person) {
-  std::map<int, int> counts;
-  for (const std::vector<int>& draw : futures.steps) ++counts[draw[person]];
-  std::string text;
-  for (const auto& [steps, count] : counts) {
-    text += (text.empty() ? "" : ", ") + std::to_string(steps) + ": " +
-            Rounded(count / static_cast<double>(futures.steps.size()), 2);
-  }
-  return text;
-}
-
-}  // namespace
 
 std::string LastFrameText(const Futures& futures) {
   std::vector<std::string> titles = {">person", ">x m", ">5 %", ">95 %", ">y m", ">5 %", ">95 %"};

@@ -13,6 +13,15 @@ Eigen::Vector2d CartUnder(const Body& body, const Vector3<double>& hip, const Ve
   return (hip - HipPosition(body, at_origin)).head<2>();
 }
 
+// A predictor that has seen the first frames.
+Result<OnlinePredictor> After(const IdentifiedModel& model, const PendulumRecording& recording,
+                              int observed, int num_frames, ForecastUse use) {
+  Result<OnlinePredictor> made = OnlinePredictor::Make(
+      model, recording, num_frames > 0 ? num_frames : recording.num_frames(), use);
+  for (int t = 1; made.ok() && t < observed; ++t) made.value().Observe(FrameAt(recording, t));
+  return made;
+}
+
 }  // namespace
 
 MaybeError CheckLearnsFromFrames(const IdentifiedModel& model) {
@@ -106,19 +115,6 @@ HipDistribution OnlinePredictor::Distribution(const Prediction& prediction) cons
   return HipDistribution(model_->forecasts->errors, PushAxes(*recording_), std::move(centre),
                          frames_->LastHips(), frames_->seconds(), recording_->scene.dt);
 }
-
-namespace {
-
-// A predictor that has seen the first frames.
-Result<OnlinePredictor> After(const IdentifiedModel& model, const PendulumRecording& recording,
-                              int observed, int num_frames, ForecastUse use) {
-  Result<OnlinePredictor> made = OnlinePredictor::Make(
-      model, recording, num_frames > 0 ? num_frames : recording.num_frames(), use);
-  for (int t = 1; made.ok() && t < observed; ++t) made.value().Observe(FrameAt(recording, t));
-  return made;
-}
-
-}  // namespace
 
 Result<Prediction> PredictFrom(const IdentifiedModel& model, const PendulumRecording& recording,
                                int observed, int num_frames, ForecastUse use) {

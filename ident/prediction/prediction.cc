@@ -28,6 +28,70 @@ void AddSteps(const IdentifiedModel& model, const PendulumRecording& recording,
   }
 }
 
+int FirstPushStart(const Scene& scene) {
+  int start = scene.pushes.front().start_frame;
+  for (const ScenePush& push : scene.pushes) start = std::min(start, push.start_frame);
+  return start;
+}
+
+MaybeError CheckAgain(const std::vector<PushAgain>& again, const Scene& scene, int frames) {
+  const int length = scene.LastPushEnd() - FirstPushStart(scene);
+  int end = scene.LastPushEnd();
+  for (const auto& [frame, times] : again) {
+    const std::string start = "--push_again: frame " + std::to_string(frame);
+    if (!(times > 0.0) || !std::isfinite(times)) {
+      return Error{start + " has the strength " + Rounded(times, 3) +
+                   "; it must be a positive number, as in 40:1.5"};
+    }
+    if (frame < 0) return Error{start + " is negative; frames count from 0"};
+    if (frame < end) {
+      return Error{start +
+                   " comes before the push before it has ended; pushes must not overlap, and stand "
+                   "in ascending order: " +
+                   "give frame " + std::to_string(end) + " or a later one"};
+    }
+    // Row t drives the step from frame t to t + 1.
+    if (frame > frames - 2) {
+      return Error{start + " is too late for the " + std::to_string(frames) +
+                   " frames that are predicted; give an earlier one, or more --frames"};
+    }
+    end = frame + length;
+  }
+  return std::nullopt;
+}
+
+// Where a person stood: the ground tilts about there.
+Vector3<double> Origin(const Scene& scene, int person) {
+  const ScenePerson& who = scene.people[person];
+  return {who.start.q[0], who.start.q[1], who.body.cart_height};
+}
+
+void Move(const Scene& scene, HipPaths* hips) {
+  for (size_t n = 0; n < hips->size(); ++n) {
+    for (size_t t = 0; t < (*hips)[n].size(); ++t) {
+      Vector3<double>& hip = (*hips)[n][t];
+      const int frame = static_cast<int>(t);
+      hip = PointInLaboratory(scene.ground.PoseAt(frame), Origin(scene, static_cast<int>(n)), hip);
+    }
+  }
+}
+
+// moved(pose of the ground, origin, point).
+template <typename Moved>
+void MoveJoints(const Scene& scene, const Moved& moved, std::vector<BodyMotion>* bodies) {
+  if (!scene.ground.moves()) return;
+  for (size_t n = 0; n < bodies->size(); ++n) {
+    const Vector3<double> origin = Origin(scene, static_cast<int>(n));
+    for (size_t t = 0; t < (*bodies)[n].size(); ++t) {
+      const GroundPose& ground = scene.ground.PoseAt(static_cast<int>(t));
+      Pose& pose = (*bodies)[n][t];
+      for (int joint = 0; joint < kBodyJoints; ++joint) {
+        pose.col(joint) = moved(ground, origin, pose.col(joint));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
@@ -164,42 +228,6 @@ Warnings InputWarnings(const IdentifiedModel& model,
   return warnings;
 }
 
-namespace {
-
-int FirstPushStart(const Scene& scene) {
-  int start = scene.pushes.front().start_frame;
-  for (const ScenePush& push : scene.pushes) start = std::min(start, push.start_frame);
-  return start;
-}
-
-MaybeError CheckAgain(const std::vector<PushAgain>& again, const Scene& scene, int frames) {
-  const int length = scene.LastPushEnd() - FirstPushStart(scene);
-  int end = scene.LastPushEnd();
-  for (const auto& [frame, times] : again) {
-    const std::string start = "--push_again: frame " + std::to_string(frame);
-    if (!(times > 0.0) || !std::isfinite(times)) {
-      return Error{start + " has the strength " + Rounded(times, 3) +
-                   "; it must be a positive number, as in 40:1.5"};
-    }
-    if (frame < 0) return Error{start + " is negative; frames count from 0"};
-    if (frame < end) {
-      return Error{start +
-                   " comes before the push before it has ended; pushes must not overlap, and stand "
-                   "in ascending order: " +
-                   "give frame " + std::to_string(end) + " or a later one"};
-    }
-    // Row t drives the step from frame t to t + 1.
-    if (frame > frames - 2) {
-      return Error{start + " is too late for the " + std::to_string(frames) +
-                   " frames that are predicted; give an earlier one, or more --frames"};
-    }
-    end = frame + length;
-  }
-  return std::nullopt;
-}
-
-}  // namespace
-
 MaybeError CheckChangedPushes(const ChangedPushes& changed, const PendulumRecording& recording,
                               int frames) {
   if (!(changed.scale > 0.0) || !std::isfinite(changed.scale)) {
@@ -238,42 +266,6 @@ std::string ChangedPushesText(const ChangedPushes& changed, const PendulumRecord
   }
   return text;
 }
-
-namespace {
-
-// Where a person stood: the ground tilts about there.
-Vector3<double> Origin(const Scene& scene, int person) {
-  const ScenePerson& who = scene.people[person];
-  return {who.start.q[0], who.start.q[1], who.body.cart_height};
-}
-
-void Move(const Scene& scene, HipPaths* hips) {
-  for (size_t n = 0; n < hips->size(); ++n) {
-    for (size_t t = 0; t < (*hips)[n].size(); ++t) {
-      Vector3<double>& hip = (*hips)[n][t];
-      const int frame = static_cast<int>(t);
-      hip = PointInLaboratory(scene.ground.PoseAt(frame), Origin(scene, static_cast<int>(n)), hip);
-    }
-  }
-}
-
-// moved(pose of the ground, origin, point).
-template <typename Moved>
-void MoveJoints(const Scene& scene, const Moved& moved, std::vector<BodyMotion>* bodies) {
-  if (!scene.ground.moves()) return;
-  for (size_t n = 0; n < bodies->size(); ++n) {
-    const Vector3<double> origin = Origin(scene, static_cast<int>(n));
-    for (size_t t = 0; t < (*bodies)[n].size(); ++t) {
-      const GroundPose& ground = scene.ground.PoseAt(static_cast<int>(t));
-      Pose& pose = (*bodies)[n][t];
-      for (int joint = 0; joint < kBodyJoints; ++joint) {
-        pose.col(joint) = moved(ground, origin, pose.col(joint));
-      }
-    }
-  }
-}
-
-}  // namespace
 
 Prediction InLaboratory(const PendulumRecording& recording, Prediction prediction) {
   const Scene& scene = recording.scene;

@@ -116,25 +116,6 @@ void HoldOutCopies(const std::vector<PendulumRecording>& recordings, std::vector
   }
 }
 
-}  // namespace
-
-Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& recordings,
-                                    FoldScheme scheme, int num_folds, int repeats, uint64_t seed) {
-  Result<std::vector<Fold>> folds = DrawFolds(recordings, scheme, num_folds, repeats, seed);
-  if (folds.ok()) HoldOutCopies(recordings, &folds.value());
-  return folds;
-}
-
-std::vector<int> Others(const std::vector<int>& held_out, int total) {
-  std::vector<int> others;
-  for (int i = 0; i < total; ++i) {
-    if (!std::binary_search(held_out.begin(), held_out.end(), i)) others.push_back(i);
-  }
-  return others;
-}
-
-namespace {
-
 using Indices = std::map<std::string, int>;
 
 std::string Text(const nlohmann::ordered_json& object, const char* key) {
@@ -173,6 +154,21 @@ Result<Fold> ReadFold(const JsonDocument& document, const std::string& at, const
 }
 
 }  // namespace
+
+Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& recordings,
+                                    FoldScheme scheme, int num_folds, int repeats, uint64_t seed) {
+  Result<std::vector<Fold>> folds = DrawFolds(recordings, scheme, num_folds, repeats, seed);
+  if (folds.ok()) HoldOutCopies(recordings, &folds.value());
+  return folds;
+}
+
+std::vector<int> Others(const std::vector<int>& held_out, int total) {
+  std::vector<int> others;
+  for (int i = 0; i < total; ++i) {
+    if (!std::binary_search(held_out.begin(), held_out.end(), i)) others.push_back(i);
+  }
+  return others;
+}
 
 Result<std::vector<Fold>> ReadFolds(const std::string& path,
                                     const std::vector<PendulumRecording>& recordings) {

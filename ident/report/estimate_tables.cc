@@ -24,31 +24,6 @@ constexpr char kUndetermined[] = "undetermined";
 constexpr double kOpenFactor = 100.0;  // to either side
 constexpr double kOpenSize = 1e6;      // of intervals that contain zero, in units of the value
 
-}  // namespace
-
-double ShownEnd(double value, double end, double other_end) {
-  const double open = end < value ? -INFINITY : INFINITY;
-  if (!std::isfinite(end)) return end;
-  const double factor = end / value;
-  if (value * end <= 0.0 || value * other_end <= 0.0) {
-    return std::abs(end) > kOpenSize * std::max(1.0, std::abs(value)) ? open : end;
-  }
-  if (factor > kOpenFactor) return open;
-  const bool wide = std::abs(std::log(end / other_end)) > 2.0 * std::log(kOpenFactor);
-  return wide && factor < 1.0 / kOpenFactor ? open : end;
-}
-
-std::string IntervalText(double value, double lower, double upper) {
-  const double from = ShownEnd(value, lower, upper), to = ShownEnd(value, upper, lower);
-  if (!std::isfinite(from) && !std::isfinite(to)) return kUndetermined;
-  const auto side = [](double end) {
-    return std::isfinite(end) ? Rounded(end, 4) : std::string("open");
-  };
-  return "[" + side(from) + ", " + side(to) + "]";
-}
-
-namespace {
-
 // Words for a derived gain; rates are told as their time constant.
 struct GainWords {
   const char *derived, *name, *unit;
@@ -76,21 +51,6 @@ std::string GainText(const GainWords& words, const Combination& gain) {
                   : " (undetermined)");
 }
 
-}  // namespace
-
-std::string GainsText(const FitResult& result) {
-  std::string text;
-  for (const GainWords& words : kGainWords) {
-    for (const Combination& gain : result.derived) {
-      if (gain.name != words.derived || !(gain.value > 0.0)) continue;
-      text += (text.empty() ? "" : ", ") + GainText(words, gain);
-    }
-  }
-  return text.empty() ? "" : Capitalized(text) + ".";
-}
-
-namespace {
-
 // "97/3/0"
 std::string SharesText(const Shares& s) {
   const auto percent = [](double share) { return Rounded(std::round(100.0 * share), 3); };
@@ -105,6 +65,38 @@ std::string PullText(const Estimate& e) {
 }
 
 }  // namespace
+
+double ShownEnd(double value, double end, double other_end) {
+  const double open = end < value ? -INFINITY : INFINITY;
+  if (!std::isfinite(end)) return end;
+  const double factor = end / value;
+  if (value * end <= 0.0 || value * other_end <= 0.0) {
+    return std::abs(end) > kOpenSize * std::max(1.0, std::abs(value)) ? open : end;
+  }
+  if (factor > kOpenFactor) return open;
+  const bool wide = std::abs(std::log(end / other_end)) > 2.0 * std::log(kOpenFactor);
+  return wide && factor < 1.0 / kOpenFactor ? open : end;
+}
+
+std::string IntervalText(double value, double lower, double upper) {
+  const double from = ShownEnd(value, lower, upper), to = ShownEnd(value, upper, lower);
+  if (!std::isfinite(from) && !std::isfinite(to)) return kUndetermined;
+  const auto side = [](double end) {
+    return std::isfinite(end) ? Rounded(end, 4) : std::string("open");
+  };
+  return "[" + side(from) + ", " + side(to) + "]";
+}
+
+std::string GainsText(const FitResult& result) {
+  std::string text;
+  for (const GainWords& words : kGainWords) {
+    for (const Combination& gain : result.derived) {
+      if (gain.name != words.derived || !(gain.value > 0.0)) continue;
+      text += (text.empty() ? "" : ", ") + GainText(words, gain);
+    }
+  }
+  return text.empty() ? "" : Capitalized(text) + ".";
+}
 
 TextTable EstimateTable(const FitResult& result) {
   TextTable table({"parameter", ">value", ">std error", "95 % interval", "unit", "status",

@@ -428,18 +428,6 @@ ReportSection ResidualSection(const FittedModel& model) {
   return section;
 }
 
-namespace {
-
-// Costs on a logarithmic axis. A likelihood's may be negative: they count from 1 below the lowest.
-struct CostAxis {
-  double base = 0.0;
-  explicit CostAxis(double lowest) : base(lowest > 0.0 ? 0.0 : lowest - 1.0) {}
-  std::string Title() const { return base == 0.0 ? "cost" : "1 + cost above the lowest"; }
-  double At(double cost) const { return std::log10(std::max(1e-300, cost - base)); }
-};
-
-}  // namespace
-
 ReportSection SolveSection(const FittedModel& model) {
   ReportSection section{"solve", "Solver convergence"};
   TextTable starts(
@@ -453,15 +441,16 @@ ReportSection SolveSection(const FittedModel& model) {
   if (trace.size() < 2) return section;
   double lowest = HUGE_VAL;
   for (const TracePoint& point : trace) lowest = std::min(lowest, point.cost);
-  const CostAxis axis(lowest);
+  // A likelihood's costs may be negative: they count from 1 below the lowest.
+  const double base = lowest > 0.0 ? 0.0 : lowest - 1.0;
   Chart cost, gradient;
-  cost.title = axis.Title();
+  cost.title = base == 0.0 ? "cost" : "1 + cost above the lowest";
   gradient.title = "largest gradient component";
   ChartLine c{{}, kPredictedLook, false}, g = c;
   TextTable numbers({"step", "horizon_frames", "iteration", "cost", "gradient"});
   for (size_t i = 0; i < trace.size(); ++i) {
     const double step = static_cast<double>(i);
-    c.points.emplace_back(step, axis.At(trace[i].cost));
+    c.points.emplace_back(step, std::log10(std::max(1e-300, trace[i].cost - base)));
     if (trace[i].gradient > 0.0) g.points.emplace_back(step, std::log10(trace[i].gradient));
     numbers.Add({i, trace[i].horizon, trace[i].iteration, trace[i].cost, trace[i].gradient});
   }

@@ -25,6 +25,10 @@ std::string TrainingText(const FitOptions& o) {
   return text;
 }
 
+using Place = nlohmann::ordered_json::json_pointer;
+
+constexpr double kFileRounding = 1e-6;  // of a parameter
+
 }  // namespace
 
 std::string NetworkText(const FitResult& result) {
@@ -69,14 +73,6 @@ std::string PreparationText(const std::map<std::string, std::string>& configurat
   }
   return text;
 }
-
-namespace {
-
-using Place = nlohmann::ordered_json::json_pointer;
-
-constexpr double kFileRounding = 1e-6;  // of a parameter
-
-}  // namespace
 
 Result<std::map<std::string, double>> ReadTruth(const std::string& manifest_path) {
   const Result<JsonDocument> document = ReadJsonDocument(manifest_path);

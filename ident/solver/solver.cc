@@ -78,6 +78,12 @@ ceres::Solver::Summary Minimize(FitProblem::Built* built, ceres::Solver::Options
   return summary;
 }
 
+// Where demands begin and contacts close, steps shrink with the trust region until one is within
+// the tolerance, which is no optimum: from such an end a fresh region goes on, without what secants
+// learned, while it brings more than so many tolerances.
+constexpr double kWorthAnother = 50.0;
+constexpr int kMostFresh = 5;
+
 }  // namespace
 
 ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Problem& problem) {
@@ -229,16 +235,6 @@ Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recor
   }
   return Error{"this program trains no large networks: it is built without pushid_large_networks"};
 }
-
-namespace {
-
-// Where demands begin and contacts close, steps shrink with the trust region until one is within
-// the tolerance, which is no optimum: from such an end a fresh region goes on, without what secants
-// learned, while it brings more than so many tolerances.
-constexpr double kWorthAnother = 50.0;
-constexpr int kMostFresh = 5;
-
-}  // namespace
 
 SolveStart Refit(const FitProblem& problem, const FitPoint& from, int num_threads,
                  RecordingSums known) {

@@ -63,6 +63,13 @@ MaybeError TrainSeeds(const char* name, const Options& of_kind, int seeds,
   return std::nullopt;
 }
 
+std::vector<ObservedGroup> ObservedGroups(const std::vector<BodyRecording>& recordings,
+                                          const std::vector<int>& among) {
+  std::vector<ObservedGroup> groups;
+  for (int i : among) groups.push_back(GroupOf(recordings[i]));
+  return groups;
+}
+
 }  // namespace
 
 Result<SharedNetworks> TrainParticles(const GeneratorSamples& samples,
@@ -138,17 +145,6 @@ Result<TrainedGenerator> TrainGenerator(const GeneratorSamples& samples,
   for (int i = 0; i < index; ++i) RemoveCheckpoint(SeedsCheckpoint(options.checkpoint, i));
   return trained;
 }
-
-namespace {
-
-std::vector<ObservedGroup> ObservedGroups(const std::vector<BodyRecording>& recordings,
-                                          const std::vector<int>& among) {
-  std::vector<ObservedGroup> groups;
-  for (int i : among) groups.push_back(GroupOf(recordings[i]));
-  return groups;
-}
-
-}  // namespace
 
 GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation, int phases) {
   GeneratorSamples samples;

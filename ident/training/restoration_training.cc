@@ -74,37 +74,6 @@ MaybeError Save(const std::string& path, const std::string& key, const std::stri
   return WriteFileAtomically(path, bytes);
 }
 
-}  // namespace
-
-MaybeError RunToEnd(Trainer* trainer, const std::string& key, const CheckpointOptions& options,
-                    const std::function<void(TrainingPoint* point)>& told, TrainingCourse* course) {
-  double last = Now() - kCheckpointSeconds;  // the first is due at once
-  std::string state;
-  std::vector<TrainingPoint> curve;
-  if (Load(options.checkpoint, key, &state, &curve) && trainer->Resume(state)) {
-    course->resumed = true;
-  } else {
-    curve.clear();
-  }
-  while (!trainer->Done()) {
-    curve.push_back(trainer->RunRound());
-    told(&curve.back());
-    const bool due = trainer->Done() ? options.keep_finished : Now() - last >= kCheckpointSeconds;
-    if (options.checkpoint.empty() || !due) continue;
-    last = Now();
-    if (MaybeError error = Save(options.checkpoint, key, trainer->State(), curve)) return error;
-  }
-  course->curve.insert(course->curve.end(), curve.begin(), curve.end());
-  return std::nullopt;
-}
-
-void RemoveCheckpoint(const std::string& file) {
-  std::error_code ignored;
-  if (!file.empty()) std::filesystem::remove(file, ignored);
-}
-
-namespace {
-
 constexpr double kCurveWidth = 700;  // pixels
 constexpr char kTraining[] = "stroke:#2a788e", kHeldOut[] = "stroke:#d1495b";
 
@@ -140,6 +109,33 @@ void AddPanels(const std::vector<TrainingPoint>& stage, std::vector<Chart>* pane
 }
 
 }  // namespace
+
+MaybeError RunToEnd(Trainer* trainer, const std::string& key, const CheckpointOptions& options,
+                    const std::function<void(TrainingPoint* point)>& told, TrainingCourse* course) {
+  double last = Now() - kCheckpointSeconds;  // the first is due at once
+  std::string state;
+  std::vector<TrainingPoint> curve;
+  if (Load(options.checkpoint, key, &state, &curve) && trainer->Resume(state)) {
+    course->resumed = true;
+  } else {
+    curve.clear();
+  }
+  while (!trainer->Done()) {
+    curve.push_back(trainer->RunRound());
+    told(&curve.back());
+    const bool due = trainer->Done() ? options.keep_finished : Now() - last >= kCheckpointSeconds;
+    if (options.checkpoint.empty() || !due) continue;
+    last = Now();
+    if (MaybeError error = Save(options.checkpoint, key, trainer->State(), curve)) return error;
+  }
+  course->curve.insert(course->curve.end(), curve.begin(), curve.end());
+  return std::nullopt;
+}
+
+void RemoveCheckpoint(const std::string& file) {
+  std::error_code ignored;
+  if (!file.empty()) std::filesystem::remove(file, ignored);
+}
 
 std::string TrainingCurveSvg(const std::vector<TrainingPoint>& curve, const std::string& title) {
   Figure figure{{{"training", kTraining}, {"held-out recordings", kHeldOut}}, {}, title};

@@ -118,6 +118,52 @@ void Summarize(Bootstrap* bootstrap) {
   }
 }
 
+constexpr double kDriftErrors = 2.0;
+
+std::vector<double> Errors(const Uncertainty& uncertainty, size_t count) {
+  std::vector<double> errors;
+  for (size_t i = 0; i < count; ++i) errors.push_back(uncertainty.estimates[i].standard_error);
+  return errors;
+}
+
+template <typename T>
+void Cut(int frames, std::vector<std::vector<T>>* people) {
+  for (std::vector<T>& person : *people) {
+    if (static_cast<int>(person.size()) > frames) person.resize(frames);
+  }
+}
+
+HorizonFit FitFirst(const FitProblem& whole, int frames) {
+  HorizonFit fit{frames, {}, {}, ""};
+  std::vector<PendulumRecording> first = whole.recordings();
+  for (PendulumRecording& r : first) {
+    // Frame 0 and the steps to `frames`. The pushes stay whole: a tail knows the mean of its push.
+    const int last = PushFrame(r) + frames + 1;
+    Cut(last, &r.states);
+    Cut(last, &r.rod_length);
+    Cut(last, &r.hip);
+    Cut(last, &r.weight);
+  }
+  FitOptions options = whole.options();
+  options.num_threads = 1;
+  const FitProblem problem(first, options);
+  const Solution solution = Solve(problem);
+  if (!solution.ok()) {
+    fit.failure = "it could not be solved";
+  } else if (!solution.start.failed.empty()) {
+    fit.failure = "some rollouts leave the model's domain";
+  } else {
+    const FitPoint& point = solution.start.to;
+    fit.value = problem.SharedValues(point);
+    fit.standard_error = Errors(ComputeUncertainty(problem, point), fit.value.size());
+  }
+  return fit;
+}
+
+std::string ValueText(double value, double error) {
+  return Rounded(value, 4) + " +- " + Rounded(error, 2);
+}
+
 }  // namespace
 
 ResamplingUnits MakeResamplingUnits(const std::vector<PendulumRecording>& recordings,
@@ -206,56 +252,6 @@ Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& es
   Summarize(&bootstrap);
   return bootstrap;
 }
-
-namespace {
-
-constexpr double kDriftErrors = 2.0;
-
-std::vector<double> Errors(const Uncertainty& uncertainty, size_t count) {
-  std::vector<double> errors;
-  for (size_t i = 0; i < count; ++i) errors.push_back(uncertainty.estimates[i].standard_error);
-  return errors;
-}
-
-template <typename T>
-void Cut(int frames, std::vector<std::vector<T>>* people) {
-  for (std::vector<T>& person : *people) {
-    if (static_cast<int>(person.size()) > frames) person.resize(frames);
-  }
-}
-
-HorizonFit FitFirst(const FitProblem& whole, int frames) {
-  HorizonFit fit{frames, {}, {}, ""};
-  std::vector<PendulumRecording> first = whole.recordings();
-  for (PendulumRecording& r : first) {
-    // Frame 0 and the steps to `frames`. The pushes stay whole: a tail knows the mean of its push.
-    const int last = PushFrame(r) + frames + 1;
-    Cut(last, &r.states);
-    Cut(last, &r.rod_length);
-    Cut(last, &r.hip);
-    Cut(last, &r.weight);
-  }
-  FitOptions options = whole.options();
-  options.num_threads = 1;
-  const FitProblem problem(first, options);
-  const Solution solution = Solve(problem);
-  if (!solution.ok()) {
-    fit.failure = "it could not be solved";
-  } else if (!solution.start.failed.empty()) {
-    fit.failure = "some rollouts leave the model's domain";
-  } else {
-    const FitPoint& point = solution.start.to;
-    fit.value = problem.SharedValues(point);
-    fit.standard_error = Errors(ComputeUncertainty(problem, point), fit.value.size());
-  }
-  return fit;
-}
-
-std::string ValueText(double value, double error) {
-  return Rounded(value, 4) + " +- " + Rounded(error, 2);
-}
-
-}  // namespace
 
 HorizonCheck CheckHorizons(const FitProblem& problem, const FitPoint& estimate,
                            const Uncertainty& uncertainty, int num_threads,

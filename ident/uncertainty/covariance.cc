@@ -29,6 +29,49 @@ std::string LineUpKey(const PendulumRecording& recording) {
   return key;
 }
 
+constexpr double kLeastKept = 0.01;
+constexpr double kNoLeverage = 1e-13;  // moves a score by half as much
+
+Eigen::MatrixXd Centred(const Eigen::MatrixXd& columns) {
+  return columns.colwise() - columns.rowwise().mean().eval();
+}
+
+// What leaving a cluster out would leave of a direction, by the eigenvalues of M_g. A direction
+// that one cluster alone determines is counted as ten times what its score says, no more: with
+// second derivatives in H leverages may pass one.
+Eigen::ArrayXd Kept(const Eigen::ArrayXd& leverage) { return (1.0 - leverage).max(kLeastKept); }
+
+// F of J base, with F'F that of all its rows.
+Eigen::MatrixXd FewRows(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& base) {
+  std::vector<Eigen::Index> used, filled;
+  for (Eigen::Index column = 0; column < jacobian.cols(); ++column) {
+    if (!jacobian.col(column).isZero(0.0)) used.push_back(column);
+  }
+  for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
+    if (!jacobian.row(row).isZero(0.0)) filled.push_back(row);
+  }
+  const Eigen::MatrixXd packed = jacobian(filled, used), own = base(used, Eigen::all);
+  if (filled.size() <= used.size()) return packed * own;  // condensed already
+  const SymmetricEigen squares = DecomposeSymmetric(packed.transpose() * packed);
+  return squares.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+         (squares.vectors.transpose() * own);
+}
+
+// The directions of M_g = W'W that it is not zero in, and its eigenvalues there.
+struct Leverage {
+  Eigen::ArrayXd m;
+  Eigen::MatrixXd v;  // a column each
+
+  explicit Leverage(const Eigen::MatrixXd& w) : m(0), v(w.cols(), 0) {
+    if (w.rows() == 0) return;
+    const SymmetricEigen eigen = DecomposeSymmetric(w * w.transpose());
+    const Eigen::ArrayXd values = eigen.values.array();
+    const Eigen::Index some = (values > kNoLeverage).count();  // they ascend
+    m = values.tail(some);
+    v = w.transpose() * eigen.vectors.rightCols(some) * m.rsqrt().matrix().asDiagonal();
+  }
+};
+
 }  // namespace
 
 Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterBy by,
@@ -96,53 +139,6 @@ Clustering ClusterRows(const FitProblem& problem, const Clusters& clusters,
   if (clusters.by == ClusterBy::kSubject) rows.recordings = ClusterByRecording(score);
   return rows;
 }
-
-namespace {
-
-constexpr double kLeastKept = 0.01;
-constexpr double kNoLeverage = 1e-13;  // moves a score by half as much
-
-Eigen::MatrixXd Centred(const Eigen::MatrixXd& columns) {
-  return columns.colwise() - columns.rowwise().mean().eval();
-}
-
-// What leaving a cluster out would leave of a direction, by the eigenvalues of M_g. A direction
-// that one cluster alone determines is counted as ten times what its score says, no more: with
-// second derivatives in H leverages may pass one.
-Eigen::ArrayXd Kept(const Eigen::ArrayXd& leverage) { return (1.0 - leverage).max(kLeastKept); }
-
-// F of J base, with F'F that of all its rows.
-Eigen::MatrixXd FewRows(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& base) {
-  std::vector<Eigen::Index> used, filled;
-  for (Eigen::Index column = 0; column < jacobian.cols(); ++column) {
-    if (!jacobian.col(column).isZero(0.0)) used.push_back(column);
-  }
-  for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
-    if (!jacobian.row(row).isZero(0.0)) filled.push_back(row);
-  }
-  const Eigen::MatrixXd packed = jacobian(filled, used), own = base(used, Eigen::all);
-  if (filled.size() <= used.size()) return packed * own;  // condensed already
-  const SymmetricEigen squares = DecomposeSymmetric(packed.transpose() * packed);
-  return squares.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-         (squares.vectors.transpose() * own);
-}
-
-// The directions of M_g = W'W that it is not zero in, and its eigenvalues there.
-struct Leverage {
-  Eigen::ArrayXd m;
-  Eigen::MatrixXd v;  // a column each
-
-  explicit Leverage(const Eigen::MatrixXd& w) : m(0), v(w.cols(), 0) {
-    if (w.rows() == 0) return;
-    const SymmetricEigen eigen = DecomposeSymmetric(w * w.transpose());
-    const Eigen::ArrayXd values = eigen.values.array();
-    const Eigen::Index some = (values > kNoLeverage).count();  // they ascend
-    m = values.tail(some);
-    v = w.transpose() * eigen.vectors.rightCols(some) * m.rsqrt().matrix().asDiagonal();
-  }
-};
-
-}  // namespace
 
 RowClusters ClusterByRecording(const ResidualRows& score) {
   RowClusters clusters;

@@ -31,6 +31,56 @@ std::vector<Value> AtWordRate(const std::vector<Value>& values, const GroupMotio
   return resampled;
 }
 
+constexpr int kNever = -1;
+
+// Everybody's states that count.
+std::vector<Symbols> StatesOf(const std::vector<GroupMotion>& groups, const StateFunction& states) {
+  std::vector<Symbols> all;
+  for (const GroupMotion& group : groups) {
+    for (const Symbols& symbols : StatesOfPeople(group, states)) {
+      all.push_back(Counted(group, symbols));
+    }
+  }
+  return all;
+}
+
+// Whether a begins before b: people who never move come last.
+bool Before(int a, int b) { return a != kNever && (b == kNever || a < b); }
+
+int FirstOf(const std::vector<int>& onsets) {
+  size_t first = 0;
+  for (size_t n = 1; n < onsets.size(); ++n) {
+    if (Before(onsets[n], onsets[first])) first = n;
+  }
+  return onsets[first] == kNever ? kNever : static_cast<int>(first);
+}
+
+std::optional<double> Share(double part, int whole) {
+  return whole > 0 ? std::optional<double>(part / whole) : std::nullopt;
+}
+
+std::string Cell(const std::optional<double>& value) {
+  if (!value) return "none";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", *value);
+  return text;
+}
+
+// First poses carried by hips.
+std::vector<BodyMotion> Carried(const std::vector<BodyMotion>& recorded, const HipPaths& hips) {
+  std::vector<BodyMotion> carried;
+  for (size_t n = 0; n < recorded.size(); ++n) {
+    const Pose& first = recorded[n].front();
+    BodyMotion motion;
+    for (const Vector3<double>& hip : hips[n]) {
+      const Eigen::Vector3d move = hip - first.col(kBodyHip);
+      motion.push_back(first.colwise() + move);
+    }
+    carried.push_back(std::move(motion));
+  }
+  return carried;
+}
+
 }  // namespace
 
 std::vector<BodyMotion> AtWordRate(const GroupMotion& group) {
@@ -70,45 +120,6 @@ std::vector<BodyMotion> CountedMotions(const std::vector<GroupMotion>& groups) {
   }
   return all;
 }
-
-namespace {
-
-constexpr int kNever = -1;
-
-// Everybody's states that count.
-std::vector<Symbols> StatesOf(const std::vector<GroupMotion>& groups, const StateFunction& states) {
-  std::vector<Symbols> all;
-  for (const GroupMotion& group : groups) {
-    for (const Symbols& symbols : StatesOfPeople(group, states)) {
-      all.push_back(Counted(group, symbols));
-    }
-  }
-  return all;
-}
-
-// Whether a begins before b: people who never move come last.
-bool Before(int a, int b) { return a != kNever && (b == kNever || a < b); }
-
-int FirstOf(const std::vector<int>& onsets) {
-  size_t first = 0;
-  for (size_t n = 1; n < onsets.size(); ++n) {
-    if (Before(onsets[n], onsets[first])) first = n;
-  }
-  return onsets[first] == kNever ? kNever : static_cast<int>(first);
-}
-
-std::optional<double> Share(double part, int whole) {
-  return whole > 0 ? std::optional<double>(part / whole) : std::nullopt;
-}
-
-std::string Cell(const std::optional<double>& value) {
-  if (!value) return "none";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f", *value);
-  return text;
-}
-
-}  // namespace
 
 SocialMetrics CompareStates(const std::vector<GroupMotion>& recorded,
                             const std::vector<GroupMotion>& motions, const StateFunction& states) {
@@ -237,25 +248,6 @@ const char* GroupMetricsLegend() {
   return "SSCP, changes (0: the same) and NDMS (1: the same) measure how people move and how often "
          "they step, but not whether the right person does so in time; onsets measure only that.";
 }
-
-namespace {
-
-// First poses carried by hips.
-std::vector<BodyMotion> Carried(const std::vector<BodyMotion>& recorded, const HipPaths& hips) {
-  std::vector<BodyMotion> carried;
-  for (size_t n = 0; n < recorded.size(); ++n) {
-    const Pose& first = recorded[n].front();
-    BodyMotion motion;
-    for (const Vector3<double>& hip : hips[n]) {
-      const Eigen::Vector3d move = hip - first.col(kBodyHip);
-      motion.push_back(first.colwise() + move);
-    }
-    carried.push_back(std::move(motion));
-  }
-  return carried;
-}
-
-}  // namespace
 
 std::optional<GroupMetrics> CompareHips(const std::vector<PendulumRecording>& recordings,
                                         const RecordedBodies& bodies,

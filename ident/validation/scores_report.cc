@@ -110,6 +110,23 @@ void AddGroups(const std::vector<const ScoreSummary*>& summaries, const MetricLi
   }
 }
 
+std::string FigureText(const PropagationMean& mean) {
+  if (!mean.known()) return "-";
+  return WithError(mean.value, mean.error);
+}
+
+// The onset errors of those who move in both say little where most movers are missed: a model that
+// moves only the pushed person would look best.
+bool MostMissed(const PropagationSummary& s) { return s.missed_movers > 0.5 * s.movers; }
+
+bool OfThoseWhoMoveInBoth(int figure) {
+  return figure == kOnsetError || figure == kOnsetErrorReached || figure == kOnsetBias;
+}
+
+std::string CountsText(double part, double whole) {
+  return Rounded(part, 3) + " of " + Rounded(whole, 4);
+}
+
 }  // namespace
 
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
@@ -162,27 +179,6 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   columns.push_back({"constant velocity", &evaluation.Baseline("constant_velocity").propagation});
   return text + "\n" + PropagationText(columns);
 }
-
-namespace {
-
-std::string FigureText(const PropagationMean& mean) {
-  if (!mean.known()) return "-";
-  return WithError(mean.value, mean.error);
-}
-
-// The onset errors of those who move in both say little where most movers are missed: a model that
-// moves only the pushed person would look best.
-bool MostMissed(const PropagationSummary& s) { return s.missed_movers > 0.5 * s.movers; }
-
-bool OfThoseWhoMoveInBoth(int figure) {
-  return figure == kOnsetError || figure == kOnsetErrorReached || figure == kOnsetBias;
-}
-
-std::string CountsText(double part, double whole) {
-  return Rounded(part, 3) + " of " + Rounded(whole, 4);
-}
-
-}  // namespace
 
 std::string SpeedText(const PropagationMean& slowness) {
   const std::optional<PropagationMean> speed = Speed(slowness);

@@ -119,27 +119,6 @@ constexpr RenderSection* kSections[] = {LeadSection,
                                         OfModel<AdviceSection>,
                                         OfModel<ProvenanceSection>};
 
-}  // namespace
-
-Report BuildReport(const FittedModel& model, const std::vector<Recording>& recordings,
-                   const BuildReportOptions& options) {
-  const FitResult& result = model.fit;
-  Report report;
-  report.title = "pushid: " + std::to_string(result.recordings.size()) + " recordings (" +
-                 model.provenance.setting + "), preset " + result.options.preset;
-  report.subtitle =
-      "parameters, their uncertainty and their predictions; pushid " + model.provenance.version;
-  ReportSource source{model};
-  source.views = ViewRecordings(result, recordings, options.num_threads, options.progress);
-  const IdentifiedModel identified = ModelOf(result);
-  source.frequency = FrequencyResponses(identified, MakePendulumRecordings(recordings));
-  source.propagation = PropagationOf(result, source.views);
-  for (RenderSection* const render : kSections) report.sections.push_back(render(source));
-  return report;
-}
-
-namespace {
-
 StepScore ScoreOf(const std::vector<RecordingView>& views) {
   std::vector<StepPrediction> predictions;
   for (const RecordingView& view : views) {
@@ -160,23 +139,6 @@ ReportFigure ReliabilityFigure(const StepScore& score) {
           {{}, {ReliabilityChart(score)}},
           numbers};
 }
-
-}  // namespace
-
-ReportSection StepSection(const ReportSource& source) {
-  ReportSection section{"steps", "Who steps"};
-  if (!source.fit.step_probability) return section;
-  const StepScore score = ScoreOf(source.views);
-  if (!score.known()) return section;
-  section.tables.push_back(
-      {"who steps in the recordings shown here, which were fitted; pushid-crossvalidate scores "
-       "others",
-       StepScoresTable({{"predicted", &score}})});
-  section.figures.push_back(ReliabilityFigure(score));
-  return section;
-}
-
-namespace {
 
 // Recordings of several people that the model predicts, with hips by the model and by a baseline
 // that sees the recording until the last push ends.
@@ -201,6 +163,36 @@ ShownGroups GroupsOf(const std::vector<RecordingView>& views) {
 }
 
 }  // namespace
+
+Report BuildReport(const FittedModel& model, const std::vector<Recording>& recordings,
+                   const BuildReportOptions& options) {
+  const FitResult& result = model.fit;
+  Report report;
+  report.title = "pushid: " + std::to_string(result.recordings.size()) + " recordings (" +
+                 model.provenance.setting + "), preset " + result.options.preset;
+  report.subtitle =
+      "parameters, their uncertainty and their predictions; pushid " + model.provenance.version;
+  ReportSource source{model};
+  source.views = ViewRecordings(result, recordings, options.num_threads, options.progress);
+  const IdentifiedModel identified = ModelOf(result);
+  source.frequency = FrequencyResponses(identified, MakePendulumRecordings(recordings));
+  source.propagation = PropagationOf(result, source.views);
+  for (RenderSection* const render : kSections) report.sections.push_back(render(source));
+  return report;
+}
+
+ReportSection StepSection(const ReportSource& source) {
+  ReportSection section{"steps", "Who steps"};
+  if (!source.fit.step_probability) return section;
+  const StepScore score = ScoreOf(source.views);
+  if (!score.known()) return section;
+  section.tables.push_back(
+      {"who steps in the recordings shown here, which were fitted; pushid-crossvalidate scores "
+       "others",
+       StepScoresTable({{"predicted", &score}})});
+  section.figures.push_back(ReliabilityFigure(score));
+  return section;
+}
 
 ReportSection GroupSection(const ReportSource& source) {
   ReportSection section{"groups", "Groups"};
