@@ -256,6 +256,9 @@ constexpr double kSteady = 0.3;                         // of it: by how much it
 // Shares of the peak: a force that is still on; a slow start, after which no sudden end is
 // expected.
 constexpr double kStillOn = 0.5, kSlowStart = 0.25;
+// Shares of the peak: what counts as equal, and what a clipped push would have reached above it at
+// least, as its slopes beside the flat part go on.
+constexpr double kSameValue = 1e-6, kCutOff = 0.1;
 
 double Length(const Vector4<double>& row) { return row.head<2>().norm(); }
 
@@ -372,6 +375,7 @@ class Judge {
     if (rest == 0.0 && HasNoEnd(push, r_.num_frames())) {
       Add(FindingKind::kNoEnd, who, HorizontalForce(push.force.back()));
     }
+    if (IsClipped(push)) Add(FindingKind::kClipped, who, peak);
   }
 
   const PendulumRecording& r_;
@@ -419,6 +423,19 @@ bool HasNoEnd(const ScenePush& push, int num_frames) {
   return push.EndFrame() >= num_frames - 1 || Length(push.force.front()) < kSlowStart * peak;
 }
 
+bool IsClipped(const ScenePush& push) {
+  if (push.kind != PushKind::kExternal) return false;
+  const double peak = Peak(push);
+  const auto& rows = push.force;
+  const auto at_top = [peak](const auto& row) { return Length(row) > (1.0 - kSameValue) * peak; };
+  const auto first = std::find_if(rows.begin(), rows.end(), at_top);
+  const auto after = std::find_if_not(first, rows.end(), at_top);
+  if (after - first < 3 || first == rows.begin() || after == rows.end()) return false;
+  const double slope = std::min(peak - Length(*(first - 1)), peak - Length(*after));
+  return 2 * (after - first) < static_cast<long>(rows.size()) &&
+         0.5 * static_cast<double>(after - first) * slope > kCutOff * peak;
+}
+
 const std::vector<FindingRow>& Names(FindingKind) {
   using Kind = FindingKind;
   static const std::vector<FindingRow> kRows = {
@@ -448,6 +465,10 @@ const std::vector<FindingRow>& Names(FindingKind) {
        "the sensor has an offset, which counts as a push: subtract it (pushid-push does)", true},
       {"push without an end", Kind::kNoEnd, "the push ends while its force is large",
        "N at the end", "is the record cut off? Give all of it", true},
+      {"flat top", Kind::kClipped, "the force rises and then stays at its largest value", "N",
+       "the sensor's range was exceeded, and the push was larger: leave these recordings out "
+       "(--leave_out)",
+       true},
       {"strong push", Kind::kStrong, "the push is above 1 kN", "N",
        "people rarely push so hard: is its unit N, and is its window right?", false},
       {"first row", Kind::kFirstRow, "the push's first row stands out", "N",

@@ -55,6 +55,10 @@ double RestingForce(const ScenePush& push, double dt);
 // Whether a measured force, or the recording, stops while the force is large.
 bool HasNoEnd(const ScenePush& push, int num_frames);
 
+// Whether a measured force rises steeply, stays at its largest value for three rows or more, though
+// not for half of the push, and falls steeply: it left the range of its sensor.
+bool IsClipped(const ScenePush& push);
+
 enum class FindingKind {
   kAgainst,
   kAside,
@@ -63,7 +67,8 @@ enum class FindingKind {
   kLate,
   kEarly,
   kZero,
-  kNoEnd,  // of a push and its motion
+  kNoEnd,
+  kClipped,  // of a push and its motion
   kStrong,
   kFirstRow,  // of a push
   kMass,

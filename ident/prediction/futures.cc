@@ -20,6 +20,23 @@ namespace pushid {
 namespace {
 
 constexpr double kShares[] = {0.05, 0.25, 0.5, 0.75, 0.95};
+// Quantiles of fewer error paths end at the largest, which a new recording often exceeds.
+constexpr size_t kEnoughErrors = 19;
+
+double ChiSquare(int freedom, Random* random) {
+  double sum = 0.0;
+  for (int i = 0; i < freedom; ++i) sum += std::pow(random->Normal(), 2);
+  return sum;
+}
+
+// With few error paths each stands for a normal distribution of unknown spread: to either side,
+// and as far as Student's t of as many degrees of freedom goes.
+double SpreadOfFew(size_t paths, Random* random) {
+  if (paths >= kEnoughErrors) return 1.0;
+  const int freedom = static_cast<int>(paths);
+  const double side = random->Unit() < 0.5 ? -1.0 : 1.0;
+  return side * std::sqrt(freedom / ChiSquare(freedom, random));
+}
 
 std::vector<ParameterSet<double>> FromCovariance(const FitResult& result,
                                                  const BandOptions& options) {
@@ -35,9 +52,7 @@ std::vector<ParameterSet<double>> FromCovariance(const FitResult& result,
   for (int s = 0; s < options.samples; ++s) {
     Eigen::VectorXd z(size);
     for (Eigen::Index i = 0; i < size; ++i) z[i] = random.Normal();
-    double chi_square = 0.0;
-    for (int i = 0; i < freedom; ++i) chi_square += std::pow(random.Normal(), 2);
-    const Eigen::VectorXd move = root * z / std::sqrt(chi_square / freedom);
+    const Eigen::VectorXd move = root * z / std::sqrt(ChiSquare(freedom, &random) / freedom);
     ParameterSet<double> set = result.parameters;
     for (Eigen::Index i = 0; i < size; ++i) {
       const ParameterSpec& spec = result.options.table[free[i]];
@@ -218,8 +233,9 @@ DrawnPaths DrawPaths(const FitResult& result, const std::vector<ParameterSet<dou
         const size_t last = others.size() - 1;
         const size_t drawn = static_cast<size_t>(draw * static_cast<double>(others.size()));
         const std::vector<BandPoint>& error = others[std::min(last, drawn)]->path;
+        const double scale = speed * SpreadOfFew(others.size(), &random);
         for (size_t t = 0; t < path.size(); ++t) {
-          path[t] += speed * error[std::min(t, error.size() - 1)];
+          path[t] += scale * error[std::min(t, error.size() - 1)];
         }
       }
       draws.back().push_back(std::move(path));

@@ -4,7 +4,8 @@
 // are drawn from the clustered covariance (multivariate Student's t of G - 1 degrees of freedom on
 // the fitted scale) or from the bootstrap's rows, and rolled out. And no two people, nor two
 // pushes, are alike, which no parameter tells: to every rollout the error path of a randomly drawn
-// fitted recording is added, per impulse over mass, so that a harder push errs farther. (Without
+// fitted recording is added, per impulse over mass, so that a harder push errs farther; with fewer
+// than 19 of them spread by Student's t, as the largest of a few is no bound. (Without
 // the second part the bands say where the *mean* person goes: held out, 90 % bands of single people
 // held 83 % of the frames along the push and 68 % of those across.)
 //

@@ -154,6 +154,26 @@ TEST(Findings, APushWithoutAnEnd) {
       HasNoEnd(MakeScenePush(0, 0, PushKind::kExternal, rows), static_cast<int>(rows.size())));
 }
 
+// A half-sine of 0.2 s, cut at 70 % of its peak of 157 N; smooth pushes in steps of 1 N, and a
+// force that is held, have flat tops as well.
+TEST(Findings, ASensorThatIsClipped) {
+  PendulumRecording recording = Make({});
+  std::vector<Vector4<double>> rows = recording.scene.pushes[0].force, slow, held;
+  const double limit = 0.7 * 157.0;
+  for (Vector4<double>& row : rows) row *= std::min(1.0, limit / std::max(1e-9, row[0]));
+  recording.scene.pushes = {MakeScenePush(0, 0, PushKind::kExternal, rows)};
+  const std::vector<Finding> found = FindingsOf(recording);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].kind, FindingKind::kClipped);
+  EXPECT_NEAR(found[0].value, limit, 1e-9);
+  for (int t = 0; t <= 60; ++t) {
+    slow.push_back({std::round(100.0 * std::sin(M_PI * t / 60.0)), 0.0, 0.0, 0.0});
+    held.push_back({std::min({20.0 * t, 100.0, 20.0 * (60 - t)}), 0.0, 0.0, 0.0});
+  }
+  EXPECT_FALSE(IsClipped(MakeScenePush(0, 0, PushKind::kExternal, slow)));
+  EXPECT_FALSE(IsClipped(MakeScenePush(0, 0, PushKind::kExternal, held)));
+}
+
 // A motor pushes the cart, and the pole lags behind: its end goes back at first.
 TEST(Findings, ACartThatIsPushedIsLookedAtItself) {
   PendulumRecording recording = Make({});

@@ -1,8 +1,10 @@
 // Bands of hip paths: their order, where they come from, and whether they hold new recordings.
 #include <gtest/gtest.h>
 
+#include "datasets/files/random.h"
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
+#include "ident/model/model_rollout.h"
 #include "ident/prediction/futures.h"
 #include "ident/validation/crossvalidation.h"
 #include "tests/ident/fit_samples.h"
@@ -94,6 +96,28 @@ TEST(PredictiveBands, LieAroundTheRollout) {
   EXPECT_NEAR(rollout.hip[0][last].x(), band.middle[last][0], 1e-12);
   EXPECT_GT(band.middle[last][0], band.lower50[last][0]);
   EXPECT_LT(band.middle[last][0], band.upper50[last][0]);
+}
+
+// Three error paths drawn from N(0, 1): a fourth lies within their band in nine of ten cases, where
+// the largest of three would hold one of two.
+TEST(PredictiveBands, HoldAsOftenAsTheySayOfFewErrors) {
+  const std::vector<PendulumRecording> recordings = MakePendulums(VaryingStudy());
+  const FitResult result = Fit(recordings, UnbiasedFit(VaryingStudy()));
+  const std::vector<ParameterSet<double>> samples(200, result.parameters);
+  const double speed = PushSpeed(recordings[3]);
+  Random random(7);
+  int inside = 0;
+  constexpr int kStudies = 300;
+  for (int study = 0; study < kStudies; ++study) {
+    std::vector<ErrorPath> errors;
+    for (const char* name : {"a", "b", "c"}) {
+      errors.push_back({name, {BandPoint::Constant(random.Normal())}});
+    }
+    const PathBand band = ComputeBands(result, samples, errors, recordings[3], 1).people[0];
+    const double drawn = band.middle[0][0] + speed * random.Normal();
+    inside += drawn > band.lower90[0][0] && drawn < band.upper90[0][0];
+  }
+  EXPECT_NEAR(inside / static_cast<double>(kStudies), 0.9, 0.06);
 }
 
 TEST(PredictiveBands, HoldNewRecordingsAsOftenAsTheySay) {
