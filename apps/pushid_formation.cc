@@ -57,9 +57,10 @@ DEFINE_double(spacing, 0.45, "distance between neighbours, cart to cart, m");
 DEFINE_string(pushed, "0",
               "who is pushed, comma-separated numbers; people are counted from 0, from "
               "back to front, and in a row from right to left");
-DEFINE_string(push, "80",
+DEFINE_string(push, "",
               "pushes, comma-separated, N s or N s@start in s, as in 80@0,80@1,112@2; every push "
-              "acts on all of --pushed as the fit's pushes did: of their kind and at their height");
+              "acts on all of --pushed as the fit's pushes did: of their kind and at their height "
+              "(default: one of their usual impulse)");
 DEFINE_double(push_duration, 0.0,
               "duration of each push (a half-sine), s; 0: that of the fit's pushes");
 DEFINE_double(direction, 0.0, "direction of all pushes, degrees from +x to the left");
@@ -200,7 +201,7 @@ std::vector<HipPush> Pushes(const UsualPush& usual) {
   for (const std::string& word : SplitList(FLAGS_push)) {
     pushes.push_back(ParsePush(std::string(Trimmed(word)), usual));
   }
-  if (pushes.empty()) throw Error{"--push is empty; give an impulse in N s, as in 80"};
+  if (pushes.empty()) pushes.push_back(ParsePush(Rounded(usual.impulse, 2), usual));
   return pushes;
 }
 

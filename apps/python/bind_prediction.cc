@@ -232,8 +232,8 @@ Array Restored(const Restoration& restoration, const Model& model, const SharedR
 struct FormationAsked {
   std::string shape;
   int people, pushed;
-  double spacing, push, push_direction, duration, fps;
-  std::optional<double> push_duration, mass, rod;  // none: as in the fit
+  double spacing, push_direction, duration, fps;
+  std::optional<double> push, push_duration, mass, rod;  // none: as in the fit
 };
 
 Scene SceneOf(const FormationAsked& asked, const std::optional<PushRange>& fitted) {
@@ -253,7 +253,7 @@ Scene SceneOf(const FormationAsked& asked, const std::optional<PushRange>& fitte
   }
   const UsualPush usual = fitted ? fitted->usual.value_or(UsualPush{}) : UsualPush{};
   AddHipPush(asked.pushed,
-             {asked.push, 0.0, asked.push_duration.value_or(usual.duration),
+             {asked.push.value_or(usual.impulse), 0.0, asked.push_duration.value_or(usual.duration),
               asked.push_direction * M_PI / 180.0, usual.height, usual.kind},
              &scene);
   return scene;
@@ -291,11 +291,11 @@ void AddSummaries(const FormationRun& run, const WaveBands& waves, py::dict* dic
 }
 
 py::dict OnFormation(const Model& model, const std::string& shape, int people, double spacing,
-                     int pushed, double push, std::optional<double> push_duration,
+                     int pushed, std::optional<double> push, std::optional<double> push_duration,
                      double push_direction, std::optional<double> mass, std::optional<double> rod,
                      double duration, double fps, const std::string& set, bool bands) {
   const IdentifiedModel identified = With(model, set);
-  const Scene scene = SceneOf({shape, people, pushed, spacing, push, push_direction, duration, fps,
+  const Scene scene = SceneOf({shape, people, pushed, spacing, push_direction, duration, fps, push,
                                push_duration, mass, rod},
                               identified.push_range);
   const std::shared_ptr<const FittedModel> fitted = model.fitted;

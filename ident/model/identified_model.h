@@ -46,6 +46,7 @@ struct UsualPush {
   PushKind kind = PushKind::kExternal;
   double duration = 0.2;  // of the rows, s
   double height = 1.0;    // of their torques over the rod: 1 is the hip
+  double impulse = 80.0;  // N s
 };
 
 // The pushes and people that a model was fitted to (model/model_rollout.h). Whatever was not there,

@@ -260,7 +260,9 @@ void Fields(Archive& a, UsualPush& p) {
   a("kind", p.kind);
   a("duration_s", p.duration);
   a("height_of_rod", p.height);
-  a.Check(p.duration > 0.0 && std::isfinite(p.height), "a usual push has numbers that cannot be");
+  if (a.Has("impulse_N_s")) a("impulse_N_s", p.impulse);  // older files have none
+  a.Check(p.duration > 0.0 && p.impulse > 0.0 && std::isfinite(p.height),
+          "a usual push has numbers that cannot be");
 }
 
 template <class Archive>

@@ -116,11 +116,13 @@ bool HasHeight(const ScenePush& push) {
 
 // The medians of the commonest kind.
 std::optional<UsualPush> UsualOf(const std::vector<PendulumRecording>& recordings) {
-  std::map<PushKind, std::vector<double>> durations, heights;
+  std::map<PushKind, std::vector<double>> durations, heights, impulses;
   for (const PendulumRecording& recording : recordings) {
     for (const ScenePush& push : recording.scene.pushes) {
       if (push.force.empty() || !HasDirection(push)) continue;
-      durations[push.kind].push_back(Duration(recording, push));
+      const double duration = Duration(recording, push);
+      durations[push.kind].push_back(duration);
+      impulses[push.kind].push_back(duration * push.mean.head<2>().norm());
       heights[push.kind].push_back(HeightOfRod(recording, push));
     }
   }
@@ -129,7 +131,7 @@ std::optional<UsualPush> UsualOf(const std::vector<PendulumRecording>& recording
       std::max_element(durations.begin(), durations.end(), [](const auto& a, const auto& b) {
         return a.second.size() < b.second.size();
       })->first;
-  return UsualPush{kind, Median(durations[kind]), Median(heights[kind])};
+  return UsualPush{kind, Median(durations[kind]), Median(heights[kind]), Median(impulses[kind])};
 }
 
 // From a person's cart to the nearest other one, m; infinite for who is alone.

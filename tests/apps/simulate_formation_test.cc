@@ -260,7 +260,6 @@ TEST_F(SimulateFormationTest, BadUsage) {
       {{"--formation=line", "--pushed=0,,1"}, {"--pushed", "''"}},
       {{"--formation=line", "--pushed=1,1"}, {"--pushed", "twice"}},
       {{"--formation=line", "--pushed="}, {"--pushed is empty"}},
-      {{"--formation=line", "--push="}, {"--push is empty"}},
       {{"--formation=line", "--push=hard"}, {"--push", "'hard'", "80@1.5"}},
       {{"--formation=line", "--push=80@"}, {"--push", "'80@'"}},
       {{"--formation=line", "--push=80@-1"}, {"--push", "'80@-1'", "starts"}},

@@ -131,7 +131,7 @@ def crossvalidate(recordings: Iterable[_Recording], candidates: Mapping[str, Map
                   forecast: str = ...,
                   baselines: bool = ..., num_threads: int = ..., progress: _Jobs = ..., **asked: Any) -> CrossValidation: ...
 def simulate_formation(result: Result, shape: str = ..., people: int = ..., *, spacing: float = ..., pushed: int = ...,
-                       push: float = ..., push_duration: float | None = ..., push_direction: float = ...,
+                       push: float | None = ..., push_duration: float | None = ..., push_direction: float = ...,
                        mass: float | None = ..., rod: float | None = ..., duration: float = ..., fps: float = ..., set: Mapping[str, float] | None = ...,
                        onset_bands: bool = ...) -> Formation: ...
 

@@ -22,15 +22,15 @@ class Formation(dict):
         return _plots.wave(self, **options)
 
 
-def simulate_formation(result, shape="line", people=10, *, spacing=0.45, pushed=0, push=80.0, push_duration=None,
+def simulate_formation(result, shape="line", people=10, *, spacing=0.45, pushed=0, push=None, push_duration=None,
                        push_direction=0.0, mass=None, rod=None, duration=4.0, fps=60.0, set=None, onset_bands=False):
     """Rolls a fitted model out on a formation of people; see Formation.
 
-    shape: "line", "diamond" or "grid"; spacing: m. push: N s on person `pushed`, of the kind, at the height and (None)
-    within the push_duration (s) of the fit's pushes, push_direction degrees from +x to the left. People are those of
-    the fit as they stood, or, with mass (kg) or rod (ankles to hip, m), upright and alike. duration (s) of the
-    simulation; fps: frames per second. onset_bands: also compute 90 % bands of the onsets, by drawing parameters from
-    their covariance.
+    shape: "line", "diamond" or "grid"; spacing: m. push: N s (None: usual in the fit) on person `pushed`, of the kind, at
+    the height and (None) within the push_duration (s) of the fit's pushes, push_direction degrees from +x to the left.
+    People are those of the fit as they stood, or, with mass (kg) or rod (ankles to hip, m), upright and alike. duration
+    (s) of the simulation; fps: frames per second. onset_bands: also compute 90 % bands of the onsets, by drawing
+    parameters from their covariance.
     """
     return Formation(_pushid.simulate_formation(result._model, shape, people, spacing, pushed, push, push_duration,
                                                 push_direction, mass, rod, duration, fps, text_of("set", set or {}),
