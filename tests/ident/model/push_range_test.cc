@@ -141,6 +141,7 @@ TEST(PushRange, HoldsThePeopleAndTheUsualPush) {
   EXPECT_EQ(range.usual->kind, PushKind::kExternal);
   EXPECT_DOUBLE_EQ(range.usual->duration, 25.0 / 60.0) << "between both";
   EXPECT_NEAR(range.usual->height, 1.3, 1e-9);
+  EXPECT_NEAR(range.usual->impulse, 25.0, 1e-9) << "60 N, between both";
   EXPECT_TRUE(ExtrapolationWarnings(model, fitted).empty());
   PendulumRecording far = fitted[0];
   far.id = "far";
