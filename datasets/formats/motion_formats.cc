@@ -1,11 +1,9 @@
 // datasets: the formats of motion files.
 #include "datasets/formats/motion_formats.h"
 
-#include "datasets/files/input_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh.h"
-#include "datasets/formats/bvh_header.h"
 #include "datasets/formats/units.h"
 
 namespace pushid {
@@ -56,11 +54,9 @@ Result<PointMotion> ReadPointMotion(const std::string& path, MotionFormat format
 Result<double> ReadFrameRate(const std::string& path, MotionFormat format,
                              const PointReadOptions& options) {
   if (HasSkeleton(format)) {
-    LineReader reader;
-    if (MaybeError failed = reader.Open(path)) return *std::move(failed);
-    const Result<BvhHeader> header = ReadBvhHeader(&reader);
-    if (!header.ok()) return header.error();
-    return WholeFrameRate(1.0 / header.value().frame_time_s);
+    const Result<double> frame_time = ReadBvhFrameTime(path);
+    if (!frame_time.ok()) return frame_time;
+    return WholeFrameRate(1.0 / frame_time.value());
   }
   PointReadOptions none = options;
   none.choose = [](const std::vector<std::string>&) { return std::vector<int>{}; };

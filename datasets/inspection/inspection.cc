@@ -287,7 +287,7 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
   std::string body;
   std::vector<std::string> names;
   BvhPositionOptions options;
-  options.length_unit = LengthUnit::kMetre;  // as it stands: the unit is what is to be found
+  options.metres_per_unit = 1.0;  // as it stands: the unit is what is to be found
   options.choose_joints = [&](const BvhSkeleton& skeleton) -> Result<std::vector<int>> {
     names = skeleton.Names();
     const Result<PendulumJoints> joints =
