@@ -49,7 +49,6 @@ struct PointReadOptions {
   std::string time_column;
   // Tables: points whose columns do not follow a pattern such as hip_x, hip_y, hip_z (PointsOf).
   std::vector<PointColumns> columns;
-  bool accept_truncated = false;  // of C3D, see C3dReadOptions
 };
 
 // The points that the options choose of motion->names; without a choice all.

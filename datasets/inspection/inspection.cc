@@ -327,7 +327,7 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
 }
 
 MaybeError LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
-  const Result<C3dFile> read = ReadC3d(found->path, {true});
+  const Result<C3dFile> read = ReadC3d(found->path, true);
   if (!read.ok()) return read.error();
   const C3dFile& file = read.value();
   found->format += ", " + NameOf(file.processor) + (file.floating ? ", floats" : ", integers");
@@ -336,13 +336,7 @@ MaybeError LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
                 std::to_string(file.announced_frames) +
                 " frames: it is truncated and cannot be fitted");
   }
-  if (!file.points.empty()) {
-    PointReadOptions options;
-    options.accept_truncated = true;
-    const Result<PointMotion> motion = ReadC3dPoints(found->path, options);
-    if (!motion.ok()) return motion.error();
-    LookAtPoints(motion.value(), mapping, found);
-  }
+  if (!file.points.empty()) LookAtPoints(PointsOfC3d(file).value(), mapping, found);
   if (!file.analog.empty()) LookAtAnalog(file, found);
   LookAtPlatforms(file, found);
   for (const C3dEvent& event : file.events) {
