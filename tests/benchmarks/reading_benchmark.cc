@@ -13,7 +13,6 @@
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/point_motion.h"
-#include "datasets/formats/table_writers.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "tests/datasets/c3d_writer.h"
 
