@@ -61,21 +61,4 @@ Result<std::vector<Recording>> LoadRecordings(const Manifest& manifest, const Lo
 Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecording& entry,
                                 const LoadOptions& options = {}, Warnings* warnings = nullptr);
 
-// One person of a recording from the file that holds their motion.
-
-struct LoadedPerson {
-  RecordedPerson person;
-  double fps = 0.0;              // the manifest's, otherwise the file's
-  double metres_per_unit = 1.0;  // of the file
-  std::string file_hash;         // of the file (and of the mapping, where there is one)
-};
-
-// The person of a recording without motion, for as long as their platforms measured.
-Result<LoadedPerson> LoadPersonOnPlates(const ManifestRecording& entry);
-
-// Reads the file of subject `index`, cuts it to the manifest's frames, closes gaps, turns it to the
-// project's units and axes and checks that it can be a person.
-Result<LoadedPerson> LoadPerson(const Manifest& manifest, const ManifestRecording& entry,
-                                std::size_t index, const LoadOptions& options, Warnings* warnings);
-
 }  // namespace pushid
