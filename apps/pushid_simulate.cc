@@ -10,7 +10,7 @@
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/loading/ground_record.h"
+#include "datasets/loading/laboratory_record.h"
 #include "datasets/manifest/recording.h"
 #include "datasets/synthetic/laboratory.h"
 #include "datasets/synthetic/synthetic_clips.h"

@@ -6,7 +6,7 @@
 
 #include "apps/python/bindings.h"
 #include "datasets/inspection/findings.h"
-#include "datasets/loading/recording_from_tracks.h"
+#include "datasets/loading/motion_tracks.h"
 #include "datasets/manifest/recording.h"
 #include "datasets/sensors/force_platform.h"
 #include "ident/parameters/json_archive.h"

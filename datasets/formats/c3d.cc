@@ -16,8 +16,6 @@
 namespace pushid {
 namespace {
 
-constexpr std::size_t kC3dBlock = 512;  // bytes; the sections of a file begin with one
-
 // "at byte 1234: ..." of the file at `path`.
 Error C3dError(const std::string& path, std::size_t at, const std::string& message) {
   return {"at byte " + std::to_string(at) + ": " + message, path};

@@ -41,6 +41,7 @@ constexpr EnumNames<C3dProcessor, 3> Names(C3dProcessor) {
 // (0x800000 | fraction) 2^(exponent - 152), zero when the exponent is zero.
 
 inline constexpr int kVaxBias = 128, kFractionBits = 24;
+inline constexpr std::size_t kC3dBlock = 512;  // bytes; the sections of a file begin with one
 
 class C3dBytes {
  public:

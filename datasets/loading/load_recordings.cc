@@ -11,9 +11,8 @@
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/force_csv.h"
 #include "datasets/formats/trajectories.h"
-#include "datasets/loading/ground_record.h"
-#include "datasets/loading/plate_record.h"
-#include "datasets/loading/recording_from_tracks.h"
+#include "datasets/loading/laboratory_record.h"
+#include "datasets/loading/motion_tracks.h"
 #include "datasets/manifest/column_mapping.h"
 #include "datasets/manifest/joint_choice.h"
 

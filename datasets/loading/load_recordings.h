@@ -13,7 +13,7 @@
 #include "datasets/files/error.h"
 #include "datasets/files/input_file.h"  // HashFile
 #include "datasets/formats/units.h"
-#include "datasets/loading/motion_preparation.h"
+#include "datasets/loading/motion_tracks.h"
 #include "datasets/loading/warning.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/manifest/recording.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "datasets/files/number_text.h"
-#include "datasets/loading/recording_from_tracks.h"
+#include "datasets/loading/motion_tracks.h"
 #include "models/decompositions.h"
 
 namespace pushid {
