@@ -7,7 +7,6 @@
 #include <set>
 
 #include "datasets/files/input_file.h"
-#include "datasets/files/name_pattern.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/force_csv.h"

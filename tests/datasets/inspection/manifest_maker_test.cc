@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "datasets/files/name_pattern.h"
+#include "datasets/files/names.h"
 #include "datasets/loading/load_recordings.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
