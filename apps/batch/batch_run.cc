@@ -11,7 +11,6 @@
 #include "apps/support/app_support.h"
 #include "apps/support/processes.h"
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/json_fields.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_evaluation.h"

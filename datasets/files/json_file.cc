@@ -8,6 +8,7 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
+#include "datasets/files/kept_json.h"
 #include "models/enum_names.h"
 
 namespace pushid {
@@ -258,5 +259,17 @@ std::string MissingText(const std::vector<MissingKey>& missing) {
   }
   return text;
 }
+
+KeptJson::KeptJson() : KeptJson(nlohmann::ordered_json::object()) {}
+KeptJson::KeptJson(nlohmann::ordered_json json)
+    : json_(std::make_unique<nlohmann::ordered_json>(std::move(json))) {}
+KeptJson::KeptJson(const KeptJson& other) : KeptJson(*other) {}
+KeptJson::KeptJson(KeptJson&& other) noexcept = default;
+KeptJson& KeptJson::operator=(const KeptJson& other) {
+  json_ = std::make_unique<nlohmann::ordered_json>(*other);
+  return *this;
+}
+KeptJson& KeptJson::operator=(KeptJson&& other) noexcept = default;
+KeptJson::~KeptJson() = default;
 
 }  // namespace pushid

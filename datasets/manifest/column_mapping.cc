@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "datasets/files/json_fields.h"
 #include "datasets/files/json_file.h"
 #include "datasets/manifest/body_roles.h"
 

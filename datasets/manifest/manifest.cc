@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "datasets/files/input_file.h"
-#include "datasets/files/json_fields.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"

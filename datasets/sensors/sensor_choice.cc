@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "datasets/files/json_fields.h"
+#include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/numeric_table.h"

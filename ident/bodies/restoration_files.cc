@@ -9,7 +9,7 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
-#include "datasets/files/json_fields.h"
+#include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
