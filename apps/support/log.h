@@ -14,7 +14,6 @@
 #include <string>
 
 #include "datasets/files/error.h"
-#include "datasets/loading/warning.h"
 #include "ident/problem/parallel.h"
 
 namespace pushid {

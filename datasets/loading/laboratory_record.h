@@ -25,7 +25,6 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/loading/warning.h"
 #include "datasets/manifest/manifest.h"
 
 namespace pushid {

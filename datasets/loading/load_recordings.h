@@ -14,7 +14,6 @@
 #include "datasets/files/input_file.h"  // HashFile
 #include "datasets/formats/units.h"
 #include "datasets/loading/motion_tracks.h"
-#include "datasets/loading/warning.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/manifest/recording.h"
 

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/loading/warning.h"
 #include "datasets/manifest/recording.h"
 
 namespace pushid {

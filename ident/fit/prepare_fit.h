@@ -5,7 +5,6 @@
 
 #include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
-#include "datasets/loading/warning.h"
 #include "ident/parameters/fit_options.h"
 
 namespace pushid {
