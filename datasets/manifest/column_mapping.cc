@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/json_file.h"
-#include "datasets/manifest/body_roles.h"
+#include "datasets/manifest/recording.h"
 
 namespace pushid {
 namespace {

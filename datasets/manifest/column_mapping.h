@@ -38,7 +38,7 @@ Result<ColumnMapping> ReadColumnMapping(const std::string& path);
 // Joints and units, which manifests and mapping files write alike.
 
 // "joints": {"hip": "Hips" or 0 or ["LASI", "RASI"], "left_ankle": ..., "left_knee": ...}: any role
-// of body_roles.h, all optional. "base", a robot's base of support, stands for both ankles.
+// of recording.h, all optional. "base", a robot's base of support, stands for both ankles.
 inline constexpr int kBaseRole = -1;  // its key in JointMapping::others
 JointMapping ReadJointMapping(const JsonDocument& document, JsonFields* fields);
 

@@ -7,7 +7,6 @@
 
 #include "datasets/files/error.h"
 #include "datasets/formats/bvh.h"
-#include "datasets/manifest/body_roles.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/manifest/recording.h"
 

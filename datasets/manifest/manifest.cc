@@ -13,8 +13,8 @@
 #include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/manifest/body_roles.h"
 #include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/recording.h"
 
 namespace pushid {
 namespace {

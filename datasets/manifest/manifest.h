@@ -39,7 +39,7 @@ struct JointReference {
 // absent is found by default (joint_choice.h).
 struct JointMapping {
   std::optional<JointReference> hip, left_ankle, right_ankle;
-  std::map<int, JointReference> others{};  // by role (body_roles.h)
+  std::map<int, JointReference> others{};  // by role (recording.h)
 
   std::optional<JointReference> Of(int role) const;
   void Set(int role, const JointReference& joint);
