@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
+#include "apps/flags/published_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/flags/command_line.h"
+#include "apps/flags/overwrite_flag.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/names.h"
@@ -337,7 +338,7 @@ int Run() {
     LOG(WARNING) << warning;
   // All checks come before the first file is written.
   Manifest manifest;
-  if (FLAGS_update) manifest = WithPushes(pushes, OverwriteGiven());
+  if (FLAGS_update) manifest = WithPushes(pushes, FLAGS_overwrite);
   for (size_t i = 0; i < pushes.size(); ++i) {
     OrFail(WritePushCsv(pushes[i].file, pushes[i].made.push.force));
     PrintPush(pushes[i], 1.0 / recordings[i].fps);

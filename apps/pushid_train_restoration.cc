@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
-#include "apps/flags/futures_flags.h"
+#include "apps/flags/observed_flags.h"
+#include "apps/flags/postprocess_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"

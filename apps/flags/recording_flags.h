@@ -58,17 +58,4 @@ Provenance ProvenanceOfRun();
 // Throws where a recording has no push: without one there is nothing to learn from.
 void CheckPushed(const std::vector<Recording>& recordings);
 
-// --overwrite (overwrite_flag.cc), for programs whose outputs a person may have edited or cannot
-// make again.
-bool OverwriteGiven();
-
-// An Error where the file is there and --overwrite is not given. flag names the file. besides: what
-// else may be done ("; --update keeps ...").
-MaybeError CheckNew(const std::string& flag, const std::string& file,
-                    const std::string& besides = "");
-
-// As above, for a folder of recordings that pushid-simulate writes: --overwrite replaces only its
-// earlier output, real recordings stay.
-MaybeError CheckOutputFolder(const std::string& flag, const std::string& folder);
-
 }  // namespace pushid
