@@ -12,6 +12,37 @@
 namespace pushid {
 namespace {
 
+// Whether a skeleton has the 22 joints of the FZJ push recordings (those of
+// models/restoration/body.h) in their order, by its parents.
+bool IsFzjSkeleton(const BvhSkeleton& skeleton) {
+  return std::equal(kBodyParents.begin(), kBodyParents.end(), skeleton.joints.begin(),
+                    skeleton.joints.end(),
+                    [](int parent, const BvhJoint& joint) { return joint.parent == parent; });
+}
+
+// "mixamorig:Left_Foot" without what stands before a colon, in small letters and digits alone:
+// "leftfoot"; and what stands before the colon.
+std::string SimplifiedName(const std::string& name) {
+  std::string simple;
+  const std::size_t prefix = name.rfind(':');
+  for (char c : prefix == std::string::npos ? name : name.substr(prefix + 1)) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) simple += c;
+  }
+  return simple;
+}
+
+std::string PrefixOf(const std::string& name) {
+  const std::size_t colon = name.rfind(':');
+  return colon == std::string::npos ? "" : name.substr(0, colon);
+}
+
+// "left" and "ankle": "leftankle", "lankle", "ankleleft", "anklel".
+std::vector<std::string> NamesOnSide(const std::string& side, const std::string& part) {
+  const std::string letter = side.substr(0, 1);
+  return {side + part, letter + part, part + side, part + letter};
+}
+
 // The joints of a skeleton or the points of another file, as a choice sees them.
 struct Source {
   const std::string& path;
@@ -296,16 +327,6 @@ int OnLeft(int role) {
   return role + (role < kRightHip ? kLeftShoulder - kRightShoulder : kLeftHip - kRightHip);
 }
 
-std::vector<std::string> Split(std::string_view text, char at) {
-  std::vector<std::string> parts;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find(at), text.size());
-    parts.emplace_back(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return parts;
-}
-
 class RoleFinder {
  public:
   // Joints without `prefix` ("Anna:") are ignored: they may be another person's.
@@ -331,9 +352,9 @@ class RoleFinder {
 
   // The joints of "asi|asis" on a side, or of a word alone.
   std::vector<int> Find(const std::string& side, const std::string& words) const {
-    for (const std::string& set : Split(words, '|')) {
+    for (const std::string& set : SplitList(words, '|')) {
       std::vector<int> found;
-      const std::vector<std::string> parts = Split(set, '+');
+      const std::vector<std::string> parts = SplitList(set, '+');
       for (const std::string& part : parts) {
         const int joint = FindPart(side, part);
         if (joint >= 0) found.push_back(joint);
@@ -346,13 +367,8 @@ class RoleFinder {
  private:
   // -1 where there is none, or more than one.
   int FindPart(const std::string& side, const std::string& part) const {
-    std::vector<std::string> spellings;
-    if (side.empty()) {
-      spellings.push_back(part);
-    } else {
-      spellings = NamesOnSide(side, part);
-    }
-    for (const std::string& spelling : spellings) {
+    for (const std::string& spelling :
+         side.empty() ? std::vector<std::string>{part} : NamesOnSide(side, part)) {
       const auto first = std::find(simplified_.begin(), simplified_.end(), spelling);
       if (first == simplified_.end()) continue;
       if (std::find(first + 1, simplified_.end(), spelling) != simplified_.end()) continue;
@@ -363,7 +379,7 @@ class RoleFinder {
 
   void Fill(int role, const std::string& side, const std::string& words, BodyRoles* roles) const {
     if (roles->Has(role)) return;
-    for (const std::string& word : Split(words, '|')) {
+    for (const std::string& word : SplitList(words, '|')) {
       const std::vector<int> found = Find(side, word);
       // A mean leaves its joints to others: a hip between the hip joints.
       const bool free = found.size() > 1 || std::find(roles->joints.begin(), roles->joints.end(),
@@ -433,32 +449,6 @@ std::string CommonPrefix(const std::vector<std::string>& names, const PendulumJo
 
 }  // namespace
 
-bool IsFzjSkeleton(const BvhSkeleton& skeleton) {
-  return std::equal(kBodyParents.begin(), kBodyParents.end(), skeleton.joints.begin(),
-                    skeleton.joints.end(),
-                    [](int parent, const BvhJoint& joint) { return joint.parent == parent; });
-}
-
-std::string SimplifiedName(const std::string& name) {
-  std::string simple;
-  const std::size_t prefix = name.rfind(':');
-  for (char c : prefix == std::string::npos ? name : name.substr(prefix + 1)) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) simple += c;
-  }
-  return simple;
-}
-
-std::string PrefixOf(const std::string& name) {
-  const std::size_t colon = name.rfind(':');
-  return colon == std::string::npos ? "" : name.substr(0, colon);
-}
-
-std::vector<std::string> NamesOnSide(const std::string& side, const std::string& part) {
-  const std::string letter = side.substr(0, 1);
-  return {side + part, letter + part, part + side, part + letter};
-}
-
 Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSkeleton& skeleton,
                                             const JointMapping& mapping) {
   return ChooseFrom({path, skeleton.Names(), &skeleton}, mapping);
@@ -468,12 +458,6 @@ Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
                                             const std::vector<std::string>& names,
                                             const JointMapping& mapping) {
   return ChooseFrom({path, names}, mapping);
-}
-
-Result<std::vector<int>> JointsMeant(const std::string& path, const std::vector<std::string>& names,
-                                     const BvhSkeleton* skeleton, const std::string& key,
-                                     const JointReference& reference) {
-  return Meant({path, names, skeleton}, key, reference);
 }
 
 JointMapping Overlaid(const JointMapping& first, const JointMapping& second) {
@@ -492,7 +476,7 @@ Result<BodyRoles> ChooseRoles(const std::string& path, const std::vector<std::st
   for (int role = 0; role < kBodyJoints; ++role) {
     const std::optional<JointReference> reference = mapping.Of(role);
     if (!reference) continue;
-    Result<std::vector<int>> meant = JointsMeant(path, names, skeleton, RoleName(role), *reference);
+    Result<std::vector<int>> meant = Meant({path, names, skeleton}, RoleName(role), *reference);
     if (!meant.ok()) return meant.error();
     given.joints[role] = std::move(meant.value());
   }

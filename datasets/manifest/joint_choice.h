@@ -62,24 +62,6 @@ Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
                                             const std::vector<std::string>& names,
                                             const JointMapping& mapping);
 
-// The joint or point that one reference means, or all whose mean it is; skeleton: null for points.
-// `key` is what it stands under, for messages.
-Result<std::vector<int>> JointsMeant(const std::string& path, const std::vector<std::string>& names,
-                                     const BvhSkeleton* skeleton, const std::string& key,
-                                     const JointReference& reference);
-
-// "mixamorig:Left_Foot" without what stands before a colon, in small letters and digits alone:
-// "leftfoot"; and what stands before the colon.
-std::string SimplifiedName(const std::string& name);
-std::string PrefixOf(const std::string& name);
-
-// "left" and "ankle": "leftankle", "lankle", "ankleleft", "anklel".
-std::vector<std::string> NamesOnSide(const std::string& side, const std::string& part);
-
-// Whether a skeleton has the 22 joints of the FZJ push recordings (those of
-// models/restoration/body.h) in their order, by its parents.
-bool IsFzjSkeleton(const BvhSkeleton& skeleton);
-
 // `first` where it names a joint, otherwise `second`.
 JointMapping Overlaid(const JointMapping& first, const JointMapping& second);
 
