@@ -142,7 +142,7 @@ bool NamePattern::HasStar() const {
 }
 
 bool NamePattern::MatchFrom(std::size_t index, const std::string& path, std::size_t at,
-                            std::map<std::string, std::string>* values, int* tries) const {
+                            NameValues* values, int* tries) const {
   if (++*tries > kMostTries) return false;
   if (index == pieces_.size()) return at == path.size();
   const Piece& piece = pieces_[index];
@@ -169,16 +169,14 @@ bool NamePattern::MatchFrom(std::size_t index, const std::string& path, std::siz
   return false;
 }
 
-std::optional<std::map<std::string, std::string>> NamePattern::Match(
-    const std::string& path) const {
-  std::map<std::string, std::string> values;
+std::optional<NameValues> NamePattern::Match(const std::string& path) const {
+  NameValues values;
   int tries = 0;
   if (!MatchFrom(0, path, 0, &values, &tries)) return std::nullopt;
   return values;
 }
 
-std::optional<std::string> NamePattern::Fill(
-    const std::map<std::string, std::string>& values) const {
+std::optional<std::string> NamePattern::Fill(const NameValues& values) const {
   std::string text;
   for (const Piece& piece : pieces_) {
     if (piece.kind == Piece::kAnything) return std::nullopt;
@@ -210,45 +208,6 @@ Result<std::vector<std::string>> FilesBelow(const std::string& folder) {
   if (failed) return Error{"cannot look through it: " + failed.message(), folder};
   std::sort(files.begin(), files.end());
   return files;
-}
-
-bool PersonBefore(const FoundFile& a, const FoundFile& b) {
-  std::int64_t x = 0, y = 0;
-  const std::string &p = a.values.at("person"), &q = b.values.at("person");
-  const bool numbers = ParseInteger(p, &x) && ParseInteger(q, &y);
-  return numbers && x != y ? x < y : p < q;
-}
-
-std::string IdOf(const NamePattern& pattern, const NameValues& values) {
-  const bool several = pattern.Has("person");
-  std::string id;
-  for (const std::string& name : pattern.names()) {
-    if (name == "person" || (several && name == "subject")) continue;
-    id += (id.empty() ? "" : "_") + values.at(name);
-  }
-  return id.empty() ? "recording" : id;
-}
-
-MaybeError CheckTogether(const std::string& id, const std::vector<FoundFile>& files, bool people,
-                         const std::string& folder) {
-  const auto rest = [](NameValues values) {
-    values.erase("person");
-    values.erase("subject");
-    return values;
-  };
-  for (std::size_t i = 1; i < files.size(); ++i) {
-    const FoundFile &a = files[i - 1], &b = files[i];
-    const bool same = !people || a.values.at("person") == b.values.at("person");
-    if (!same && rest(a.values) == rest(b.values)) continue;
-    return Error{a.path + " and " + b.path + " are both " +
-                     (people && same ? "person " + Quoted(a.values.at("person")) + " of " : "") +
-                     "recording " + Quoted(id) +
-                     (rest(a.values) == rest(b.values)
-                          ? "; replace the * that differs by a name in the pattern"
-                          : "; give one of them another name"),
-                 folder};
-  }
-  return std::nullopt;
 }
 
 }  // namespace pushid

@@ -60,6 +60,8 @@ MaybeError ParseName(const std::string& flag, std::string_view text, E* value) {
   return std::nullopt;
 }
 
+using NameValues = std::map<std::string, std::string>;
+
 // A naming pattern of recordings: "{setting}/{subject}_{magnitude}_{take}.c3d".
 //
 // A name in braces stands for one or more characters other than /, as few as make the whole fit;
@@ -75,44 +77,24 @@ class NamePattern {
   bool HasStar() const;
 
   // The values of all names where `path` fits entirely.
-  std::optional<std::map<std::string, std::string>> Match(const std::string& path) const;
+  std::optional<NameValues> Match(const std::string& path) const;
 
   // The pattern with its names replaced; nullopt where a value is missing or the pattern has a *.
-  std::optional<std::string> Fill(const std::map<std::string, std::string>& values) const;
+  std::optional<std::string> Fill(const NameValues& values) const;
 
  private:
   struct Piece {
     enum Kind { kText, kName, kAnything } kind;
     std::string text;  // or the name
   };
-  bool MatchFrom(std::size_t piece, const std::string& path, std::size_t at,
-                 std::map<std::string, std::string>* values, int* tries) const;
+  bool MatchFrom(std::size_t piece, const std::string& path, std::size_t at, NameValues* values,
+                 int* tries) const;
 
   std::vector<Piece> pieces_;
   std::vector<std::string> names_;
 };
 
-// Files that a naming pattern finds in a folder, and which of them make one recording.
-
-using NameValues = std::map<std::string, std::string>;
-
-struct FoundFile {
-  std::string path;  // relative to the folder
-  NameValues values;
-};
-
 // Every regular file below the folder, as sorted paths relative to it.
 Result<std::vector<std::string>> FilesBelow(const std::string& folder);
-
-// The id of the recording that a file belongs to: its values without the person's.
-std::string IdOf(const NamePattern& pattern, const NameValues& values);
-
-// "7" before "10", and both before "a".
-bool PersonBefore(const FoundFile& a, const FoundFile& b);
-
-// Files of one recording differ in their person, and besides in the subject alone.
-// people: whether the pattern names persons; otherwise a recording is one file.
-MaybeError CheckTogether(const std::string& id, const std::vector<FoundFile>& files, bool people,
-                         const std::string& folder);
 
 }  // namespace pushid
