@@ -7,7 +7,7 @@
 #include "datasets/files/error.h"
 #include "datasets/formats/point_motion.h"
 #include "datasets/inspection/inspection.h"
-#include "datasets/manifest/joint_choice.h"
+#include "datasets/manifest/joint_mapping.h"
 #include "datasets/manifest/recording.h"
 
 namespace pushid {

@@ -21,7 +21,7 @@
 #include "datasets/inspection/inspect_motion.h"
 #include "datasets/loading/laboratory_record.h"
 #include "datasets/loading/load_recordings.h"
-#include "datasets/manifest/joint_choice.h"
+#include "datasets/manifest/joint_mapping.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/sensors/force_platform.h"
 #include "datasets/sensors/sensor_choice.h"

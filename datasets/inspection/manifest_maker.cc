@@ -14,7 +14,7 @@
 #include "datasets/formats/trajectories.h"
 #include "datasets/formats/units.h"
 #include "datasets/loading/load_recordings.h"
-#include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/joint_mapping.h"
 
 namespace pushid {
 namespace {

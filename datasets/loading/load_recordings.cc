@@ -13,8 +13,7 @@
 #include "datasets/formats/trajectories.h"
 #include "datasets/loading/laboratory_record.h"
 #include "datasets/loading/motion_tracks.h"
-#include "datasets/manifest/column_mapping.h"
-#include "datasets/manifest/joint_choice.h"
+#include "datasets/manifest/joint_mapping.h"
 
 namespace pushid {
 namespace {

@@ -12,7 +12,7 @@
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/units.h"
 #include "datasets/loading/laboratory_record.h"
-#include "datasets/manifest/joint_choice.h"
+#include "datasets/manifest/joint_mapping.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/sensors/sensor_choice.h"
 #include "models/enum_names.h"

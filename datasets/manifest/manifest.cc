@@ -13,7 +13,7 @@
 #include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/joint_mapping.h"
 #include "datasets/manifest/recording.h"
 
 namespace pushid {
