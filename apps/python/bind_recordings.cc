@@ -8,7 +8,7 @@
 #include "datasets/inspection/findings.h"
 #include "datasets/loading/motion_tracks.h"
 #include "datasets/manifest/recording.h"
-#include "datasets/sensors/force_platform.h"
+#include "datasets/sensors/force_sensors.h"
 #include "ident/parameters/json_archive.h"
 #include "ident/push/push_estimation.h"
 #include "ident/push/push_from_sensor.h"

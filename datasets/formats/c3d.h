@@ -100,7 +100,7 @@ struct C3dEvent {
   std::string context;  // Left, Right, General; may be empty
 };
 
-// The place of a force platform and the channels it fills (evaluated by force_platform.h).
+// The place of a force platform and the channels it fills (evaluated by force_sensors.h).
 struct C3dPlatform {
   int type = 2;               // 1 to 4
   std::vector<int> channels;  // indices into the analog channels, from 0

@@ -23,8 +23,7 @@
 #include "datasets/loading/load_recordings.h"
 #include "datasets/manifest/joint_mapping.h"
 #include "datasets/manifest/manifest.h"
-#include "datasets/sensors/force_platform.h"
-#include "datasets/sensors/sensor_choice.h"
+#include "datasets/sensors/force_sensors.h"
 #include "models/ipm.h"
 
 namespace pushid {

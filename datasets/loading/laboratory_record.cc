@@ -12,8 +12,7 @@
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/loading/motion_tracks.h"
-#include "datasets/sensors/force_platform.h"
-#include "datasets/sensors/sensor_choice.h"
+#include "datasets/sensors/force_sensors.h"
 #include "models/decompositions.h"
 #include "models/ipm.h"
 

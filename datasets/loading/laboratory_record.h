@@ -10,7 +10,7 @@
 //
 // What force platforms under a person measured, at the frames of the motion.
 //
-// C3D: platforms of the types of sensors/force_platform.h. Tables: columns that end with fx, fy, fz
+// C3D: platforms of the types of sensors/force_sensors.h. Tables: columns that end with fx, fy, fz
 // (vx, vy, vz in OpenSim's) and px, py (and pz, which is not needed), for each platform behind a
 // prefix of its own:
 //   time,fx,fy,fz,px,py             time,left_fx,...,left_py,right_fx,...,right_py

@@ -14,7 +14,6 @@
 #include "datasets/loading/laboratory_record.h"
 #include "datasets/manifest/joint_mapping.h"
 #include "datasets/manifest/manifest.h"
-#include "datasets/sensors/sensor_choice.h"
 #include "models/enum_names.h"
 #include "models/skeleton_mapping.h"
 
@@ -541,6 +540,35 @@ std::vector<Eigen::Vector4d> PushAtHeight(const RecordedPerson& person, int star
     rows.push_back(GeneralizedForce<double>(body, pose(start + t).q, forces[t], fraction));
   }
   return rows;
+}
+
+MaybeError CheckLasts(const RecordTimes& times, const std::string& file, int line) {
+  const double frame = 1.0 / times.fps, end_s = times.start_s + times.seconds;
+  const bool begins = times.first_s <= times.start_s + 0.5 * frame;
+  if (begins && times.last_s >= end_s - times.spare * frame) return {};
+  return Error{std::string(times.lasts) + " from " + Rounded(times.first_s, 4) + " to " +
+                   Rounded(times.last_s, 4) + " s, but the motion from " +
+                   Rounded(times.start_s, 4) + " to " + Rounded(end_s, 4) +
+                   " s of that clock; record it longer, cut the motion (end_frame), or give the "
+                   "right clock at frame 0 as \"start\"",
+               file, line};
+}
+
+Eigen::Vector3d ValueBetween(const std::vector<Eigen::Vector3d>& track, double at) {
+  const int last = static_cast<int>(track.size()) - 1;
+  if (at <= 0.0) return track[0];
+  if (at >= last) return track[last];
+  const int nodes = std::min(4, last + 1);
+  const int first = std::clamp(static_cast<int>(at) - 1, 0, last + 1 - nodes);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < nodes; ++i) {
+    double weight = 1.0;
+    for (int k = 0; k < nodes; ++k) {
+      if (k != i) weight *= (at - first - k) / (i - k);
+    }
+    sum += weight * track[first + i];
+  }
+  return sum;
 }
 
 }  // namespace pushid

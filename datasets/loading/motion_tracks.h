@@ -152,4 +152,16 @@ std::vector<Eigen::Vector4d> PushAtHeight(const RecordedPerson& person, int star
                                           const std::vector<Eigen::Vector3d>& forces,
                                           const PushHeight& height);
 
+// Checks that a record, "the record of the ground lasts", goes on for as long as a motion of so
+// many seconds that begins at `start_s` of its clock. spare: frames that may be missing at the end.
+struct RecordTimes {
+  const char* lasts;
+  double first_s, last_s, start_s, seconds, fps, spare;
+};
+MaybeError CheckLasts(const RecordTimes& times, const std::string& file, int line);
+
+// Values at even times: cubic through the four nearest samples (Lagrange; of fewer, through all).
+// at: in samples, from 0.
+Eigen::Vector3d ValueBetween(const std::vector<Eigen::Vector3d>& track, double at);
+
 }  // namespace pushid

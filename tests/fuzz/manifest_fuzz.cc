@@ -5,7 +5,7 @@
 #include "datasets/files/json_file.h"
 #include "datasets/manifest/joint_mapping.h"
 #include "datasets/manifest/manifest.h"
-#include "datasets/sensors/sensor_choice.h"
+#include "datasets/sensors/force_sensors.h"
 #include "tests/fuzz/memory_file.h"
 
 namespace {

@@ -21,7 +21,7 @@ FEATURES = [
     ("contrasts", 560, 560, r"ident/(fit/(covariates|contrast)|uncertainty/contrast|report/contrast)"),
     ("verdict", 1000, 1000, r"ident/(uncertainty/(model_verdict|assumptions)|report/verdict_text)"),
     ("steps and stance", 1749, 1749, r"models/(stance|standing|support)|datasets/loading/foot_steps|ident/(parameters/pushed_feet|fit/step_probability|prediction/predicted_steps|validation/steps_report|report/page/standing)"),
-    ("laboratory", 2021, 2021, r"models/(ground|reaction_delay|turn)|datasets/(loading/laboratory|sensors/force_platform|manifest/laboratory_keys)|residuals/plate_residual|ident/(parameters/laboratory|fit/laboratory|prediction/laboratory)"),
+    ("laboratory", 2021, 2021, r"models/(ground|reaction_delay|turn)|datasets/(loading/laboratory|manifest/laboratory_keys)|residuals/plate_residual|ident/(parameters/laboratory|fit/laboratory|prediction/laboratory)"),
     ("interaction", 450, 536, r"models/(contact|pair|interaction|ldp_interaction|neighbours)"),
     ("learned terms", 1200, 1200, r"models/(learned_terms|self_network)|ident/parameters/(learned_terms|self_network)|residuals/takeover"),
     ("large networks", 1396, 1396, r"ident/(large_networks|solver/network_training)|residuals/adjoint"),

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <limits>
 
-#include "datasets/sensors/force_platform.h"
+#include "datasets/sensors/force_sensors.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
 #include "tests/test_support.h"
