@@ -152,8 +152,7 @@ void CheckRecordings(const PushFlags& flags) {
         "a sensor file belongs to one recording; name it by --id, or put {id} into the sensor's "
         "file, as in force/{id}.csv"};
   }
-  const std::string manifest = RecordingFlagsFromCommandLine().manifest;
-  if (FLAGS_update && ManifestPaths(manifest).size() > 1) {
+  if (FLAGS_update && ManifestPaths(FLAGS_recordings).size() > 1) {
     throw Error{"--update writes into one manifest; --recordings names several"};
   }
   for (const std::string& id : ids) {
@@ -197,7 +196,7 @@ struct RecordingsPush {
 std::string PathFromManifest(const std::string& file) {
   namespace fs = std::filesystem;
   std::error_code failed;
-  const fs::path folder = fs::absolute(RecordingFlagsFromCommandLine().manifest).parent_path();
+  const fs::path folder = fs::absolute(FLAGS_recordings).parent_path();
   const fs::path path = fs::proximate(fs::absolute(file), folder, failed);
   return failed ? fs::absolute(file).string() : path.string();
 }

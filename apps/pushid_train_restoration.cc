@@ -236,8 +236,8 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
   RestorationFile file = trained.file;
   file.training = TrainingJson(recordings, options.more, trained);
   const std::string title = NameOf(options.training.kind) + " restoration, " +
-                            std::to_string(recordings.size()) + " recordings (" +
-                            RecordingFlagsFromCommandLine().setting + ")";
+                            std::to_string(recordings.size()) + " recordings (" + FLAGS_setting +
+                            ")";
   OrFail(WriteFileAtomically(in_out("curve.svg"), TrainingCurveSvg(trained.curve, title)));
   OrFail(WriteRestorationFile(flags.out, file));
   const TrainingPoint& last = trained.curve.back();

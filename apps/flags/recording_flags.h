@@ -15,14 +15,6 @@ DECLARE_string(setting);
 
 namespace pushid {
 
-struct RecordingFlags {
-  std::string manifest;          // manifest.json of the recordings, or several, comma-separated
-  std::string setting;           // which of them, as LoadOptions has it
-  std::vector<std::string> ids;  // only these; empty: all of the setting
-  bool chosen = false;           // by setting or id: not simply all of the manifest
-};
-RecordingFlags RecordingFlagsFromCommandLine();
-
 // The manifest of --recordings, merged where there are several; read once in a run.
 const Result<Manifest>& FlaggedManifest();
 

@@ -154,13 +154,6 @@ Error SyntaxError(const std::string& path, const std::string& text) {
   return error;
 }
 
-template <typename Json>
-MaybeError Write(const std::string& path, const Json& content, int indent) {
-  std::string text = content.dump(indent, ' ', false, Json::error_handler_t::replace);
-  text += '\n';
-  return WriteFileAtomically(path, text);
-}
-
 using ObjectKeys = std::vector<const MissingKey*>;  // of one object
 
 // The missing keys by object, in the order in which objects first lack something.
@@ -233,12 +226,9 @@ Result<JsonDocument> ReadJsonDocument(const std::string& path) {
   return document;
 }
 
-MaybeError WriteJson(const std::string& path, const nlohmann::json& content, int indent) {
-  return Write(path, content, indent);
-}
-
 MaybeError WriteJson(const std::string& path, const nlohmann::ordered_json& content, int indent) {
-  return Write(path, content, indent);
+  constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
+  return WriteFileAtomically(path, content.dump(indent, ' ', false, kReplace) + '\n');
 }
 
 std::string MissingText(const std::vector<MissingKey>& missing) {

@@ -46,7 +46,6 @@ Result<JsonDocument> ReadJsonDocument(const std::string& path);
 // Writes atomically, indented by `indent` spaces, with a newline at the end. Doubles are written so
 // that they read back the same. NaN and infinity have no JSON and come out as null: say them in
 // words instead. Bytes that are not UTF-8 are replaced.
-MaybeError WriteJson(const std::string& path, const nlohmann::json& content, int indent = 2);
 MaybeError WriteJson(const std::string& path, const nlohmann::ordered_json& content,
                      int indent = 2);
 

@@ -134,6 +134,18 @@ constexpr int kWindow = kObservedFrames + kForecastFrames;
 constexpr int kTestWindows = 8, kTestSeed = 1234567890;
 constexpr int kManyWindows = 1000, kWideStride = 8, kNarrowStride = 2;
 
+// Words masked to the smallest 2^b - 1 >= largest, and rejected above it; none is drawn for 0.
+int DrawnUpTo(int largest, std::mt19937* random) {
+  uint32_t mask = 0;
+  while (mask < static_cast<uint32_t>(largest)) mask = 2 * mask + 1;
+  if (mask == 0) return 0;
+  uint32_t word = 0;
+  do {
+    word = static_cast<uint32_t>((*random)()) & mask;
+  } while (word > static_cast<uint32_t>(largest));
+  return static_cast<int>(word);
+}
+
 ForecastWindow WindowAt(const MocapClip& clip, const Trajectories& motion, int start) {
   return {clip.action, motion.middleCols(start, kObservedFrames),
           motion.middleCols(start + kObservedFrames, kForecastFrames)};
@@ -274,7 +286,7 @@ void SetLayout(const std::vector<int>& mirrored, const std::vector<int>& same, J
   }
 }
 
-constexpr int kTestSeed36 = 1234567890, kPairs = 4;
+constexpr int kPairs = 4;
 constexpr int kFirstStart = 16, kPrefix = 50, kSuffix = 100;  // frames
 
 }  // namespace
@@ -316,13 +328,8 @@ std::vector<int> TestWindowStarts(int frames) {
   const int largest = frames - kObservedFrames - kWindow - 1;
   std::vector<int> starts;
   if (largest < 0) return starts;
-  uint32_t mask = 0;
-  while (mask < static_cast<uint32_t>(largest)) mask = 2 * mask + 1;
   std::mt19937 random(kTestSeed);
-  while (starts.size() < kTestWindows) {
-    const uint32_t word = static_cast<uint32_t>(random()) & mask;
-    if (word <= static_cast<uint32_t>(largest)) starts.push_back(static_cast<int>(word));
-  }
+  while (starts.size() < kTestWindows) starts.push_back(DrawnUpTo(largest, &random));
   return starts;
 }
 
@@ -426,20 +433,10 @@ std::vector<std::pair<int, int>> PairedWindowStarts(int frames, int frames_of_ot
   std::vector<std::pair<int, int>> starts;
   const auto range = [](int n) { return n - kPrefix - kSuffix - kFirstStart - 1; };
   if (range(frames) < 0 || range(frames_of_other) < 0) return starts;
-  std::mt19937 random(kTestSeed36);
-  const auto draw = [&random](int largest) {
-    uint32_t mask = 0;
-    while (mask < static_cast<uint32_t>(largest)) mask = 2 * mask + 1;
-    if (mask == 0) return kFirstStart;
-    uint32_t word = 0;
-    do {
-      word = static_cast<uint32_t>(random()) & mask;
-    } while (word > static_cast<uint32_t>(largest));
-    return kFirstStart + static_cast<int>(word);
-  };
+  std::mt19937 random(kTestSeed);
   for (int i = 0; i < kPairs; ++i) {
-    const int first = draw(range(frames));
-    starts.emplace_back(first, draw(range(frames_of_other)));
+    const int first = kFirstStart + DrawnUpTo(range(frames), &random);
+    starts.emplace_back(first, kFirstStart + DrawnUpTo(range(frames_of_other), &random));
   }
   return starts;
 }
