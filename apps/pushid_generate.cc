@@ -19,7 +19,7 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
-#include "datasets/loading/mocap_folder.h"
+#include "datasets/loading/generator_data.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_files.h"

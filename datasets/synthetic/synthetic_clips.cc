@@ -9,7 +9,7 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
-#include "datasets/loading/state_csv.h"
+#include "datasets/loading/generator_data.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "datasets/files/input_file.h"
-#include "datasets/loading/mocap_folder.h"
+#include "datasets/loading/generator_data.h"
 #include "ident/generators/generator_files.h"
 #include "ident/generators/push_particles.h"
 #include "ident/training/restoration_training.h"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "datasets/loading/mocap_folder.h"
+#include "datasets/loading/generator_data.h"
 #include "ident/generators/push_particles.h"
 #include "ident/training/training_run.h"
 
