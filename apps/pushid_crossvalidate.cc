@@ -108,11 +108,7 @@ using Predictors = std::vector<Predictor>;
 // Futures are drawn of candidates with process noise, of which there must be one.
 void CheckDrawn(const Candidates& candidates) {
   if (DrawnFutures() == 0) return;
-  if (Given("observed")) {
-    throw Error{
-        "--samples draws futures from frame 0, and --observed predicts from a later frame: leave "
-        "one out"};
-  }
+  CheckFromFirstFrame();
   for (const auto& [name, candidate] : candidates) {
     if (candidate.model.process_noise != ProcessNoise::kNone) return;
   }

@@ -20,15 +20,20 @@ namespace pushid {
 
 inline constexpr std::uint64_t kFuturesSeed = 1;  // of all draws
 
-// Throws where the model has no process noise to draw from, or frames were observed.
-inline void CheckDraws(const IdentifiedModel& model) {
-  if (FLAGS_samples == 0) return;
+// Throws where frames were observed, behind which no futures are drawn.
+inline void CheckFromFirstFrame() {
   gflags::CommandLineFlagInfo observed;  // not of every program
   if (gflags::GetCommandLineFlagInfo("observed", &observed) && !observed.is_default) {
     throw Error{
         "--samples draws futures from frame 0, and --observed predicts from a later frame: leave "
         "one out"};
   }
+}
+
+// Throws where the model has no process noise to draw from, or frames were observed.
+inline void CheckDraws(const IdentifiedModel& model) {
+  if (FLAGS_samples == 0) return;
+  CheckFromFirstFrame();
   OrFail(CheckDrawsFrom(model));
 }
 
