@@ -11,6 +11,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/fit_option_flags.h"
 #include "apps/flags/futures_flags.h"
+#include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/error.h"
@@ -107,11 +108,7 @@ using Predictors = std::vector<Predictor>;
 // Futures are drawn of candidates with process noise, of which there must be one.
 void CheckDrawn(const Candidates& candidates) {
   if (DrawnFutures() == 0) return;
-  if (Given("observed")) {
-    throw Error{
-        "--samples draws futures from frame 0, and --observed predicts from a later frame: leave "
-        "one out"};
-  }
+  CheckFromFirstFrame();
   for (const auto& [name, candidate] : candidates) {
     if (candidate.model.process_noise != ProcessNoise::kNone) return;
   }

@@ -6,11 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
+#include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
+#include "apps/flags/restoration_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_evaluation.h"

@@ -11,11 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
+#include "apps/flags/overwrite_flag.h"
 #include "apps/flags/recording_flags.h"
+#include "apps/flags/restoration_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/error.h"
@@ -533,14 +534,13 @@ int Run() {
   const FormationRun run = RunFormation(model, scene, flags.frames, flags.names);
   WarnGrouped(InputWarnings(model, {run.recording}));
   if (!run.prediction.status.ok) return LeftDomain(run.prediction.status, scene.dt);
-  const ModelFlags named = ModelFlagsFromCommandLine();
-  const FittedModel fitted = OrFail(ReadFittedModel(named.file));
+  const FittedModel fitted = OrFail(ReadFittedModel(ModelFile()));
   // A model does not hold the uncertainty of a setting's own parameters, so there are no bands
   // then.
   const bool setting = !FLAGS_setting.empty();
   const bool banded =
       !setting && (!FLAGS_svg_out.empty() || scene.num_people() <= kMostPeopleForBands);
-  const WaveBands bands = banded ? BandsOfWave(fitted, named.set, run) : WaveBands();
+  const WaveBands bands = banded ? BandsOfWave(fitted, FLAGS_set, run) : WaveBands();
   std::vector<BodyMotion> bodies;
   if (restoration) {
     bodies = FormationBodies(run, flags.first_poses, *restoration, body_flags.postprocess);
@@ -549,7 +549,7 @@ int Run() {
   std::printf("%s; %s s\n%s\n", title.c_str(),
               Rounded(run.Seconds(run.num_frames() - 1), 3).c_str(), WhoText(model, run).c_str());
   PrintPeople(run, !flags.names.empty());
-  PrintWave(run, bands, HeldInDraws(fitted, named.set), setting);
+  PrintWave(run, bands, HeldInDraws(fitted, FLAGS_set), setting);
   PrintFitWarnings(fitted);
   return PrintFutures(model, run.recording, run.num_frames());
 }

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
+#include "apps/flags/published_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
@@ -19,7 +19,7 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
-#include "datasets/loading/mocap_folder.h"
+#include "datasets/loading/generator_data.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_recording.h"

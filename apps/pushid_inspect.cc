@@ -11,7 +11,7 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/inspection/inspection.h"
-#include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/joint_mapping.h"
 #include "ident/figures/chart.h"
 #include "ident/formations/formation_run.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/flags/command_line.h"
-#include "apps/flags/recording_flags.h"
+#include "apps/flags/overwrite_flag.h"
 #include "datasets/files/names.h"
 #include "datasets/inspection/manifest_maker.h"
 

@@ -5,11 +5,12 @@
 #include <cstdio>
 #include <string>
 
-#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
+#include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
+#include "apps/flags/restoration_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/flags/command_line.h"
+#include "apps/flags/overwrite_flag.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/names.h"
@@ -150,8 +151,7 @@ void CheckRecordings(const PushFlags& flags) {
         "a sensor file belongs to one recording; name it by --id, or put {id} into the sensor's "
         "file, as in force/{id}.csv"};
   }
-  const std::string manifest = RecordingFlagsFromCommandLine().manifest;
-  if (FLAGS_update && ManifestPaths(manifest).size() > 1) {
+  if (FLAGS_update && ManifestPaths(FLAGS_recordings).size() > 1) {
     throw Error{"--update writes into one manifest; --recordings names several"};
   }
   for (const std::string& id : ids) {
@@ -195,7 +195,7 @@ struct RecordingsPush {
 std::string PathFromManifest(const std::string& file) {
   namespace fs = std::filesystem;
   std::error_code failed;
-  const fs::path folder = fs::absolute(RecordingFlagsFromCommandLine().manifest).parent_path();
+  const fs::path folder = fs::absolute(FLAGS_recordings).parent_path();
   const fs::path path = fs::proximate(fs::absolute(file), folder, failed);
   return failed ? fs::absolute(file).string() : path.string();
 }
@@ -336,7 +336,7 @@ int Run() {
     LOG(WARNING) << warning;
   // All checks come before the first file is written.
   Manifest manifest;
-  if (FLAGS_update) manifest = WithPushes(pushes, OverwriteGiven());
+  if (FLAGS_update) manifest = WithPushes(pushes, FLAGS_overwrite);
   for (size_t i = 0; i < pushes.size(); ++i) {
     OrFail(WritePushCsv(pushes[i].file, pushes[i].made.push.force));
     PrintPush(pushes[i], 1.0 / recordings[i].fps);

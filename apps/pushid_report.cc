@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/flags/command_line.h"
+#include "apps/flags/overwrite_flag.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/error.h"

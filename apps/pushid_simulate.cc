@@ -7,10 +7,10 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
-#include "apps/flags/recording_flags.h"
+#include "apps/flags/overwrite_flag.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/loading/ground_record.h"
+#include "datasets/loading/laboratory_record.h"
 #include "datasets/manifest/recording.h"
 #include "datasets/synthetic/laboratory.h"
 #include "datasets/synthetic/synthetic_clips.h"
@@ -204,9 +204,8 @@ int Run() {
   if (FLAGS_clips != 0) return WriteClips();
   if (FLAGS_laboratory != 0) return WriteOfLaboratory();
   SyntheticOptions study = StudyFromCommandLine();
-  const ModelFlags named = ModelFlagsFromCommandLine();
   const IdentifiedModel truth =
-      named.file.empty() ? OrFail(SyntheticTruth(study, named.set)) : LoadFlaggedModel();
+      FLAGS_model.empty() ? OrFail(SyntheticTruth(study, FLAGS_set)) : LoadFlaggedModel();
   study.model = truth.options;
   study.parameters = truth.parameters;
   if (study.people_in_row > 1 && !study.model.interaction.Any()) {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
+#include "apps/flags/published_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"

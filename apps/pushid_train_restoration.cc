@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
-#include "apps/flags/futures_flags.h"
+#include "apps/flags/observed_flags.h"
+#include "apps/flags/postprocess_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
@@ -27,20 +27,6 @@ namespace {
 
 using namespace pushid;
 
-struct TrainRestorationFlags {
-  RestorationRunOptions options;  // with the fit's options read from it
-  std::string out;                // folder of the restoration
-  int crossvalidate = 0;          // folds, instead of writing a restoration; 0: off
-  FoldScheme scheme = FoldScheme::kStratified;
-  std::string json_out;       // scores of the cross-validation; empty: none
-  std::string more_settings;  // of recordings to learn from too; empty: none
-  bool check = false;         // nothing else was read
-};
-
-}  // namespace
-
-DEFINE_string(model, "", "model that pushid-fit --model_out wrote: the pendulum to fit");
-namespace {
 std::string KindHelp() {
   std::string kinds;
   for (const pushid::RestorationKindRow& row : pushid::kRestorationKinds) {
@@ -50,8 +36,10 @@ std::string KindHelp() {
   return "kind of restoration: " + kinds;
 }
 const std::string kKind = KindHelp();
+
 }  // namespace
 
+DEFINE_string(model, "", "model that pushid-fit --model_out wrote: the pendulum to fit");
 DEFINE_string(kind, pushid::RowOf(pushid::RestorationTrainingOptions{}.kind).name, kKind.c_str());
 DEFINE_string(coordinates, pushid::NameOf(pushid::RestorationTrainingOptions{}.coordinates),
               "cvae: joints relative to the rod's tip (tip), or to the hip at frame 0 (ldp)");
@@ -67,12 +55,11 @@ DEFINE_string(
     "1e-7), sigma compared, the latent variable drawn, no predicted pendulums (published)");
 DEFINE_string(out, "", "folder to write: restoration.json, weights.npy, curve.svg");
 DEFINE_string(json_out, "", "--crossvalidate: write the scores here (JSON)");
-DEFINE_bool(check, TrainRestorationFlags{}.check,
-            "only check the flags: nothing is read, trained or written");
+DEFINE_bool(check, false, "only check the flags: nothing is read, trained or written");
 DEFINE_string(scheme, NameOf(FoldScheme::kStratified),
               "--crossvalidate: stratified (folds by setting, strength and subject) or interleaved "
               "(recordings of a setting assigned to folds in turn)");
-DEFINE_int32(crossvalidate, TrainRestorationFlags{}.crossvalidate,
+DEFINE_int32(crossvalidate, 0,
              "number of folds: instead of writing a restoration, refit pendulum and restoration in "
              "every fold and score the held-out recordings; 0: off");
 DEFINE_double(effort, pushid::RestorationTrainingOptions{}.effort,
@@ -162,36 +149,38 @@ void ReadModel(FitOptions* fit) {
   fit->num_threads = FLAGS_num_threads;
 }
 
-TrainRestorationFlags TrainRestorationFlagsFromCommandLine() {
-  TrainRestorationFlags flags;
-  ReadOptions(&flags.options);
-  flags.options.postprocess = PostprocessFromCommandLine();
-  flags.check = FLAGS_check;
-  if (flags.check) return flags;
-  ReadModel(&flags.options.fit);
-  OrFail(ParseName("--scheme", FLAGS_scheme, &flags.scheme));
-  if (FLAGS_crossvalidate == 0 && Given("scheme")) throw Error{"--scheme needs --crossvalidate"};
-  OrFail(CheckOutputFiles({FLAGS_json_out}));
-  flags.out = FLAGS_out;
-  flags.crossvalidate = FLAGS_crossvalidate;
-  flags.json_out = FLAGS_json_out;
-  flags.more_settings = FLAGS_more_settings;
-  return flags;
+FoldScheme Scheme() {
+  FoldScheme scheme;
+  OrFail(ParseName("--scheme", FLAGS_scheme, &scheme));
+  return scheme;
 }
 
-int CrossValidate(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& recordings,
+// With the fit's options read from the model, unless flags are only checked.
+RestorationRunOptions OptionsFromCommandLine() {
+  RestorationRunOptions options;
+  ReadOptions(&options);
+  options.postprocess = PostprocessFromCommandLine();
+  if (FLAGS_check) return options;
+  ReadModel(&options.fit);
+  Scheme();  // refuses other names
+  if (FLAGS_crossvalidate == 0 && Given("scheme")) throw Error{"--scheme needs --crossvalidate"};
+  OrFail(CheckOutputFiles({FLAGS_json_out}));
+  return options;
+}
+
+int CrossValidate(const std::vector<BodyRecording>& recordings,
                   const RestorationRunOptions& options) {
   TrainingLine line;
   const ChainValidation validation = OrFail(
-      CrossValidateChain(recordings, options, flags.scheme, flags.crossvalidate,
+      CrossValidateChain(recordings, options, Scheme(), FLAGS_crossvalidate,
                          [&](const std::string& step, double done) { line.Show(step, done); }));
   line.Finish();
   std::printf("%s", BodyText(validation.evaluation).c_str());
-  if (flags.json_out.empty()) return kDone;
+  if (FLAGS_json_out.empty()) return kDone;
   nlohmann::ordered_json json = ResultHead(kScoresSchema);
   AddBodyJson(validation.evaluation, &json);
   json["run"] = {{"training_seconds", validation.training_seconds}};
-  OrFail(WriteJson(flags.json_out, json));
+  OrFail(WriteJson(FLAGS_json_out, json));
   return kDone;
 }
 
@@ -216,17 +205,16 @@ nlohmann::ordered_json TrainingJson(const std::vector<BodyRecording>& recordings
   return json;
 }
 
-int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& recordings,
-          RestorationRunOptions options) {
-  OrFail(MakeFolder(flags.out));
-  const auto in_out = [&flags](const char* name) {
-    return (std::filesystem::path(flags.out) / name).string();
+int Train(const std::vector<BodyRecording>& recordings, RestorationRunOptions options) {
+  OrFail(MakeFolder(FLAGS_out));
+  const auto in_out = [](const char* name) {
+    return (std::filesystem::path(FLAGS_out) / name).string();
   };
   options.training.checkpoint = in_out("checkpoint.bin");
   OrFail(CheckWritable(options.training.checkpoint));
   const std::vector<int> all = Others({}, static_cast<int>(recordings.size()));
   TrainingLine line;
-  SayWhenInterrupted(KeptCheckpoints(flags.out));
+  SayWhenInterrupted(KeptCheckpoints(FLAGS_out));
   const TrainedRestoration trained = OrFail(TrainFromRecordings(
       recordings, all, options,
       [&line](const std::string& step, double done) { line.Show(step, done); }));
@@ -235,10 +223,10 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
   RestorationFile file = trained.file;
   file.training = TrainingJson(recordings, options.more, trained);
   const std::string title = NameOf(options.training.kind) + " restoration, " +
-                            std::to_string(recordings.size()) + " recordings (" +
-                            RecordingFlagsFromCommandLine().setting + ")";
+                            std::to_string(recordings.size()) + " recordings (" + FLAGS_setting +
+                            ")";
   OrFail(WriteFileAtomically(in_out("curve.svg"), TrainingCurveSvg(trained.curve, title)));
-  OrFail(WriteRestorationFile(flags.out, file));
+  OrFail(WriteRestorationFile(FLAGS_out, file));
   const TrainingPoint& last = trained.curve.back();
   std::printf("%s: %zu points of the training curve, final held-out loss %s, %s s%s; %s\n",
               title.c_str(), trained.curve.size(), Rounded(last.validation_loss, 3).c_str(),
@@ -249,30 +237,26 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
 }
 
 // Adds the recordings of --more_settings, without those that are learnt from (and scored) anyway.
-void AddMoreRecordings(const std::string& settings, const std::vector<Recording>& known,
-                       RestorationRunOptions* options) {
-  if (settings.empty()) return;
-  const std::vector<Recording> more = LoadBodiesOfSetting(settings);
-  for (const Recording& recording : more) {
-    bool is_known = false;
-    for (const Recording& other : known) is_known = is_known || other.id == recording.id;
-    if (is_known) continue;
-    options->more.push_back(OrFail(MakeBodyRecording(recording)));
+void AddMoreRecordings(const std::vector<Recording>& known, RestorationRunOptions* options) {
+  if (FLAGS_more_settings.empty()) return;
+  for (const Recording& recording : LoadBodiesOfSetting(FLAGS_more_settings)) {
+    const bool is_known =
+        std::any_of(known.begin(), known.end(),
+                    [&recording](const Recording& other) { return other.id == recording.id; });
+    if (!is_known) options->more.push_back(OrFail(MakeBodyRecording(recording)));
   }
 }
 
 int Run() {
-  const TrainRestorationFlags flags = TrainRestorationFlagsFromCommandLine();
-  if (flags.check) return kDone;
-  SetBlasThreads(flags.options.training.num_threads);
+  RestorationRunOptions options = OptionsFromCommandLine();
+  if (FLAGS_check) return kDone;
+  SetBlasThreads(options.training.num_threads);
   const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
   CheckPushed(recordings);
-  RestorationRunOptions options = flags.options;
   const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings));
   CheckObservedFlag(PendulumsOf(bodies));
-  AddMoreRecordings(flags.more_settings, recordings, &options);
-  return flags.crossvalidate > 0 ? CrossValidate(flags, bodies, options)
-                                 : Train(flags, bodies, options);
+  AddMoreRecordings(recordings, &options);
+  return FLAGS_crossvalidate > 0 ? CrossValidate(bodies, options) : Train(bodies, options);
 }
 
 }  // namespace

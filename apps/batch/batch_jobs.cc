@@ -1,16 +1,28 @@
-// apps: expanding plans.
+// apps: expanding plans, running jobs, and reading what they left.
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "apps/batch/batch.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
+#include "apps/support/processes.h"
+#include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
+#include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
+#include "datasets/files/number_text.h"
 #include "datasets/manifest/manifest.h"
+#include "ident/bodies/body_evaluation.h"
+#include "ident/model/model_json.h"
+#include "ident/parameters/json_archive.h"
 #include "ident/validation/crossvalidation.h"
+#include "ident/validation/scores_report.h"
 
 namespace pushid {
 namespace {
@@ -247,6 +259,345 @@ std::vector<BatchJob> Shard(const std::vector<BatchJob>& jobs, int i, int n) {
     if (k % static_cast<size_t>(n) + 1 == static_cast<size_t>(i)) part.push_back(job);
   }
   return part;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string StatusFile(const std::string& folder) { return folder + "/status.json"; }
+
+// status.json says how a job ended; it is written last and whole.
+//
+//   {"id": "...", "variant": "physics", "group": "X05", "replica": 0, "status": "failed",
+//    "reason": "...", "commands": [["pushid-fit", ...], ...], "run": {"seconds": 1.5}}
+MaybeError WriteJobStatus(const std::string& folder, const BatchJob& job, const JobStatus& status,
+                          const std::vector<std::vector<std::string>>& commands) {
+  const nlohmann::ordered_json json = {
+      {"schema", "pushid-job/1"}, {"id", job.id},           {"variant", job.variant},
+      {"group", job.group},       {"replica", job.replica}, {"status", NameOf(status.state)},
+      {"reason", status.reason},  {"commands", commands},   {"run", {{"seconds", status.seconds}}}};
+  return WriteJson(StatusFile(folder), json);
+}
+
+// kOpen where the folder has no status.json.
+JobStatus ReadJobStatus(const std::string& folder) {
+  JobStatus status;
+  std::error_code ignored;
+  if (!std::filesystem::exists(StatusFile(folder), ignored)) return status;
+  const JsonDocument document = OrFail(ReadJsonDocument(StatusFile(folder)));
+  JsonFields fields(document, document.content, "", "status");
+  fields.Require("status", "done or failed");
+  status.state = fields.Choice("status", JobState::kFailed);
+  status.reason = fields.Text("reason", "why the job failed");
+  if (fields.Require("run", "an object with the seconds")) {
+    JsonFields run(document, fields.At("run"), fields.Pointer("run"), "status, run");
+    status.seconds = run.Number("seconds", "how long the job took");
+    fields.Add(run);
+  }
+  OrFail(fields.error());
+  return status;
+}
+
+void AddModel(const FitResult& fit, JobResult* result) {
+  for (const Estimate& estimate : fit.estimates) {
+    if (estimate.status != EstimateStatus::kFixed) result->parameters[estimate.name] = estimate;
+  }
+  result->cost = fit.cost;
+  for (const Warning& warning : fit.warnings) result->warnings.push_back(warning.text);
+  result->settles = fit.behaviour.settles;
+  result->solve_s = fit.solve_seconds;
+}
+
+std::vector<HeldOutScore> ReadHeldOut(const std::string& path, bool bodies) {
+  const JsonDocument document = OrFail(ReadJsonDocument(path));
+  const MetricList metrics = bodies ? kBodyMetrics : TableMetrics(0);
+  const Metrics means = OrFail(MeanMetrics(document.content, metrics, path));
+  std::vector<HeldOutScore> scores;
+  for (MetricId m : metrics) scores.push_back({kMetrics[m], means[m]});
+  return scores;
+}
+
+}  // namespace
+
+const double* JobResult::HeldOut(const Metric& metric) const {
+  const auto at = std::find_if(held_out.begin(), held_out.end(), [&metric](const auto& score) {
+    return score.metric.Key() == metric.Key();
+  });
+  return at == held_out.end() ? nullptr : &at->value;
+}
+
+std::string JobFolder(const BatchPlan& plan, const BatchJob& job) {
+  return plan.dir + "/jobs/" + job.id;
+}
+
+JobResult ReadResult(const BatchPlan& plan, const BatchJob& job) {
+  const std::string folder = JobFolder(plan, job);
+  JobResult result;
+  result.job = &job;
+  try {
+    result.status = ReadJobStatus(folder);
+    if (!result.done()) return result;
+    AddModel(OrFail(ReadFittedModel(folder + "/model.json")).fit, &result);
+    if (job.held_out.empty()) return result;
+    result.held_out = ReadHeldOut(folder + "/scores.json", job.restoration_flags.has_value());
+    return result;
+  } catch (const Error& error) {
+    // The table shows nothing of a job whose files are not whole.
+    JobResult failed;
+    failed.job = &job;
+    failed.status = {JobState::kFailed, error.ToString(), result.status.seconds};
+    return failed;
+  }
+}
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double Since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// The last line of a log that gives a reason; warnings do not count.
+std::string LastLine(const std::string& path) {
+  std::ifstream file(path);
+  std::string last;
+  for (std::string line; std::getline(file, line);) {
+    if (!line.empty() && line.find(": warning: ") == std::string::npos) last = line;
+  }
+  constexpr size_t kMost = 400;
+  return last.size() <= kMost ? last : last.substr(0, kMost) + "...";
+}
+
+// Whether a program ended because it got no more memory under its limit: with a message of its own,
+// with one of the loader, or with none.
+bool LooksOutOfMemory(const ChildEnd& end, const std::string& last) {
+  for (int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGKILL}) {
+    if (end.signal == signal) return true;
+  }
+  for (const char* words :
+       {"out of memory", "bad_alloc", "annot allocate memory", "failed to map segment"}) {
+    if (last.find(words) != std::string::npos) return true;
+  }
+  return false;
+}
+
+struct Running {
+  const BatchJob* job = nullptr;
+  std::string folder;
+  std::vector<std::vector<std::string>> commands;
+  size_t step = 0;
+  pid_t pid = 0;
+  Clock::time_point begin;
+  bool out_of_time = false;
+  FolderLock lock;
+};
+
+class Pool {
+ public:
+  Pool(const BatchPlan& plan, const BatchRunOptions& options,
+       const std::function<void(const BatchProgress&)>& progress)
+      : plan_(plan), options_(options), progress_(progress), begin_(Clock::now()) {}
+
+  Result<BatchOutcome> Run(const std::vector<const BatchJob*>& waiting, int skipped) {
+    outcome_.skipped = skipped;
+    size_t next = 0;
+    while (!error_) {
+      while (!signals_.interrupted() && !error_ && next < waiting.size() &&
+             static_cast<int>(running_.size()) < options_.jobs) {
+        Begin(*waiting[next++]);
+      }
+      left_ = static_cast<int>(waiting.size() - next + running_.size());
+      Report();
+      if (signals_.interrupted() || running_.empty()) break;
+      signals_.Wait(EndOfWait());
+      Collect();
+    }
+    outcome_.interrupted = signals_.interrupted();
+    EndAll();
+    if (error_) return *error_;
+    return outcome_;
+  }
+
+ private:
+  void Begin(const BatchJob& job) {
+    Running running;
+    running.job = &job;
+    running.folder = JobFolder(plan_, job);
+    const Result<bool> mine = TakeFolder(running.folder, &running.lock);
+    if (!mine.ok()) return Fail(running, mine.error().ToString());
+    if (!mine.value()) {
+      ++outcome_.elsewhere;
+      return;
+    }
+    // Another process may have done it since this one began.
+    if (ReadResult(plan_, job).done()) {
+      ++outcome_.skipped;
+      return;
+    }
+    // A job that is half-written or failed is cleared; its folder stays, because it is what is
+    // locked.
+    if (const MaybeError stuck = Empty(running.folder)) return Fail(running, stuck->ToString());
+    running.commands = JobCommands(job, plan_, running.folder, options_.bin);
+    running.begin = Clock::now();
+    if (const MaybeError failed = Start(&running)) return Fail(running, failed->ToString());
+    running_.push_back(std::move(running));
+  }
+
+  static MaybeError Empty(const std::string& folder) {
+    std::error_code failed;
+    for (fs::directory_iterator it(folder, failed); !failed && it != fs::directory_iterator();
+         it.increment(failed)) {
+      fs::remove_all(it->path(), failed);
+      if (failed) return Error{"cannot be removed: " + failed.message(), it->path().string()};
+    }
+    if (failed) return Error{"cannot be read: " + failed.message(), folder};
+    return std::nullopt;
+  }
+
+  static Result<bool> TakeFolder(const std::string& folder, FolderLock* lock) {
+    if (MaybeError error = MakeFolder(folder)) return *error;
+    return lock->Take(folder);
+  }
+
+  // Starts the job's next command.
+  MaybeError Start(Running* running) {
+    const ChildSpec spec{running->commands[running->step], running->folder + "/stdout.txt",
+                         running->folder + "/stderr.txt", plan_.memory_limit_mb};
+    const Result<pid_t> child = StartChild(spec);
+    if (!child.ok()) return child.error();
+    running->pid = child.value();
+    return std::nullopt;
+  }
+
+  void Collect() {
+    for (ChildEnd end = NextEnded(); end.pid != 0; end = NextEnded()) {
+      const auto at = std::find_if(running_.begin(), running_.end(),
+                                   [&end](const Running& r) { return r.pid == end.pid; });
+      if (at == running_.end()) continue;
+      MaybeError failed;
+      if (end.exit_code == 0 && !at->out_of_time && ++at->step < at->commands.size()) {
+        failed = Start(&*at);
+        if (!failed) continue;
+      }
+      if (failed) {
+        Fail(*at, failed->ToString());
+      } else {
+        Finish(*at, end);
+      }
+      running_.erase(at);
+    }
+    if (plan_.time_limit_s <= 0.0) return;
+    for (Running& running : running_) {
+      if (running.out_of_time || Since(running.begin) < plan_.time_limit_s) continue;
+      running.out_of_time = true;
+      KillChild(running.pid, SIGKILL);
+    }
+  }
+
+  std::string ReasonOf(const Running& running, const ChildEnd& end) const {
+    if (running.out_of_time) {
+      return "timed out after " + DoubleText(plan_.time_limit_s) + " s";
+    }
+    const std::string last = LastLine(running.folder + "/stderr.txt");
+    if (plan_.memory_limit_mb > 0 && LooksOutOfMemory(end, last)) {
+      return "out of memory (limit " + std::to_string(plan_.memory_limit_mb) + " MB" +
+             (end.signal != 0 ? std::string("; ") + strsignal(end.signal) : "") + ")";
+    }
+    if (end.signal != 0) {
+      return std::string("killed by signal ") + strsignal(end.signal) +
+             (last.empty() ? "" : "; last message: " + last);
+    }
+    if (!last.empty()) return last;
+    if (end.exit_code == 0) return running.commands[0][0] + " wrote no model.json";
+    return end.exit_code == kFitFailed ? "the fit did not converge"
+                                       : "exit code " + std::to_string(end.exit_code);
+  }
+
+  void Finish(const Running& running, const ChildEnd& end) {
+    std::error_code ignored;
+    const bool written = fs::exists(running.folder + "/model.json", ignored);
+    const bool done = end.exit_code == 0 && !running.out_of_time && written;
+    if (!done) return Fail(running, ReasonOf(running, end));
+    if (MaybeError error = WriteStatus(running, "")) return Fail(running, error->ToString());
+    ++outcome_.done;
+  }
+
+  // A failure here costs this job only, unless nothing can be written at all.
+  void Fail(const Running& running, const std::string& reason) {
+    ++outcome_.failed;
+    if (!WriteStatus(running, reason)) return;
+    outcome_.unrecorded.push_back(reason);
+    CheckOutput(reason);
+  }
+
+  // Ends the batch where the failure in one job's folder would hit all of them.
+  void CheckOutput(const std::string& reason) {
+    const std::string probe = plan_.dir + "/jobs/.probe";
+    const MaybeError nowhere = WriteFileAtomically(probe, "x");
+    if (nowhere) error_ = Error{reason + "; " + nowhere->ToString()};
+    std::error_code ignored;
+    fs::remove(probe, ignored);
+  }
+
+  // reason: empty when it is done.
+  static MaybeError WriteStatus(const Running& running, const std::string& reason) {
+    const double seconds = running.commands.empty() ? 0.0 : Since(running.begin);
+    const JobState state = reason.empty() ? JobState::kDone : JobState::kFailed;
+    return WriteJobStatus(running.folder, *running.job, {state, reason, seconds}, running.commands);
+  }
+
+  // Ends the running jobs, which have no status yet and will be redone.
+  void EndAll() {
+    for (const Running& running : running_) KillChild(running.pid, SIGKILL);
+    const auto begin = Clock::now();
+    while (!running_.empty() && Since(begin) < 10.0) {
+      signals_.Wait(100);
+      for (ChildEnd end = NextEnded(); end.pid != 0; end = NextEnded()) {
+        running_.erase(std::remove_if(running_.begin(), running_.end(),
+                                      [&end](const Running& r) { return r.pid == end.pid; }),
+                       running_.end());
+      }
+    }
+  }
+
+  int EndOfWait() const { return plan_.time_limit_s > 0.0 ? 50 : 500; }
+
+  void Report() {
+    const int finished = outcome_.done + outcome_.failed;
+    const double each = finished > 0 ? Since(begin_) / finished : 0.0;
+    progress_({outcome_.done, outcome_.failed, left_, each * left_});
+  }
+
+  const BatchPlan& plan_;
+  const BatchRunOptions& options_;
+  const std::function<void(const BatchProgress&)>& progress_;
+  const Clock::time_point begin_;
+  SignalReader signals_;
+  std::vector<Running> running_;
+  BatchOutcome outcome_;
+  int left_ = 0;
+  MaybeError error_;
+};
+
+}  // namespace
+
+Result<BatchOutcome> RunBatch(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
+                              const BatchRunOptions& options,
+                              const std::function<void(const BatchProgress&)>& progress) {
+  std::vector<const BatchJob*> waiting;
+  std::set<std::string> seen;  // variants of the same flags share their jobs
+  int skipped = 0;
+  for (const BatchJob& job : jobs) {
+    if (!seen.insert(job.id).second) continue;
+    if (ReadResult(plan, job).done()) {
+      ++skipped;
+      continue;
+    }
+    waiting.push_back(&job);
+  }
+  return Pool(plan, options, progress).Run(waiting, skipped);
 }
 
 }  // namespace pushid

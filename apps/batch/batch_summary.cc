@@ -303,6 +303,15 @@ TextTable HeldOutTable(const std::vector<JobResult>& rows) {
   return table;
 }
 
+// The standard deviation is that of a sample.
+std::pair<double, double> MeanAndDeviation(const std::vector<double>& values) {
+  double sum = 0.0, squares = 0.0;
+  for (double value : values) sum += value;
+  const double n = static_cast<double>(values.size()), mean = sum / n;
+  for (double value : values) squares += (value - mean) * (value - mean);
+  return {mean, std::sqrt(squares / (n - 1.0))};
+}
+
 // Counts of each variant, and how its estimates (replica 0) differ between groups.
 TextTable VariantTable(const std::vector<JobResult>& rows) {
   TextTable table({"variant", ">jobs done", ">failed", ">open", "over groups", ">mean",
@@ -315,14 +324,11 @@ TextTable VariantTable(const std::vector<JobResult>& rows) {
     }
     table.Add(counts);
     for (const auto& [what, values] : v.values) {
-      double sum = 0.0, squares = 0.0;
-      for (double value : values) sum += value;
-      const double n = static_cast<double>(values.size()), mean = sum / n;
-      for (double value : values) squares += (value - mean) * (value - mean);
+      const auto [mean, deviation] = MeanAndDeviation(values);
       const auto [low, high] = std::minmax_element(values.begin(), values.end());
       table.Add({"", "", "", "", what, Rounded(mean, 4),
-                 values.size() > 1 ? Rounded(std::sqrt(squares / (n - 1.0)), 3) : "-",
-                 Rounded(*low, 4), Rounded(*high, 4)});
+                 values.size() > 1 ? Rounded(deviation, 3) : "-", Rounded(*low, 4),
+                 Rounded(*high, 4)});
     }
   }
   return table;
@@ -352,10 +358,7 @@ std::vector<BootstrapSpread> SpreadOverReplicas(const std::vector<JobResult>& ro
       const std::vector<double>& values = drawn[{row.job->variant, row.job->group}][name];
       const int n = static_cast<int>(values.size());
       if (n < 2) continue;
-      double sum = 0.0, squares = 0.0;
-      for (double value : values) sum += value;
-      for (double value : values) squares += (value - sum / n) * (value - sum / n);
-      spreads.push_back({row.job, name, estimate.value, n, std::sqrt(squares / (n - 1)),
+      spreads.push_back({row.job, name, estimate.value, n, MeanAndDeviation(values).second,
                          Quantile(values, 0.025), Quantile(values, 0.975)});
     }
   }
@@ -400,33 +403,23 @@ TextTable FailureTable(const std::vector<JobResult>& rows) {
   return table;
 }
 
-TextTable JobTable(const std::vector<JobResult>& rows) {
+// exact: all columns in full precision, for summary.csv; otherwise those that people are shown.
+TextTable JobTable(const std::vector<JobResult>& rows, bool exact) {
   std::vector<JobColumn> columns;
   std::vector<std::string> header;
-  for (const JobColumn& column : JobColumns(rows)) {
-    if (column.title.empty()) continue;
-    columns.push_back(column);
-    header.push_back((column.words ? "" : ">") + column.title);
+  for (JobColumn& column : JobColumns(rows)) {
+    if (!exact && column.title.empty()) continue;
+    header.push_back(exact ? column.name : (column.words ? "" : ">") + column.title);
+    columns.push_back(std::move(column));
   }
   TextTable table(header);
   for (const JobResult& row : rows) {
-    if (table.rows().size() > kMostRowsOnPage) break;
+    if (!exact && table.rows().size() > kMostRowsOnPage) break;
     std::vector<std::string> cells;
-    for (const JobColumn& column : columns) cells.push_back(column.cell(row).shown);
-    table.Add(cells);
-  }
-  return table;
-}
-
-// Full precision, for summary.csv.
-TextTable FullTable(const std::vector<JobResult>& rows) {
-  const std::vector<JobColumn> columns = JobColumns(rows);
-  std::vector<std::string> header;
-  for (const JobColumn& column : columns) header.push_back(column.name);
-  TextTable table(header);
-  for (const JobResult& row : rows) {
-    std::vector<std::string> cells;
-    for (const JobColumn& column : columns) cells.push_back(column.cell(row).exact);
+    for (const JobColumn& column : columns) {
+      const JobCell cell = column.cell(row);
+      cells.push_back(exact ? cell.exact : cell.shown);
+    }
     table.Add(cells);
   }
   return table;
@@ -476,7 +469,7 @@ Report PageOf(const BatchPlan& plan, const std::vector<JobResult>& rows) {
   if (rows.size() > kMostRowsOnPage) {
     jobs.Say("The first " + std::to_string(kMostRowsOnPage) + "; summary.csv has all of them.");
   }
-  jobs.Show("", JobTable(rows));
+  jobs.Show("", JobTable(rows, false));
   report.sections = {variants, failures, warnings, jobs};
   return report;
 }
@@ -490,7 +483,7 @@ std::vector<JobResult> ReadResults(const BatchPlan& plan, const std::vector<Batc
 }
 
 void WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& rows) {
-  OrFail(WriteFileAtomically(plan.dir + "/summary.csv", CsvOf(FullTable(rows))));
+  OrFail(WriteFileAtomically(plan.dir + "/summary.csv", CsvOf(JobTable(rows, true))));
   OrFail(WriteJson(plan.dir + "/summary.json", SummaryJson(plan, rows)));
   OrFail(WriteFileAtomically(plan.dir + "/summary.html", ToPage(PageOf(plan, rows))));
 }

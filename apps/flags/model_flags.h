@@ -1,12 +1,27 @@
-// apps: the flags by which an executable takes an identified model.
+// apps: the flags by which an executable takes an identified model; a program has the flags of the
+// headers that it includes.
 #pragma once
 
+#include <gflags/gflags.h>
+
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "apps/flags/command_line.h"
+#include "apps/support/app_support.h"
+#include "apps/support/processes.h"
 #include "datasets/files/error.h"
 #include "ident/model/fitted_model.h"
 #include "ident/model/identified_model.h"
+#include "ident/model/model_json.h"
+
+DEFINE_string(model, "",
+              "model that pushid-fit --model_out wrote, or pushid:synthetic_group: a group model "
+              "of synthetic people, which comes with the programs");
+DEFINE_string(set, "",
+              "what-if: replace parameters, name=value comma-separated, as in Kp_theta=1500");
 
 namespace pushid {
 
@@ -14,17 +29,43 @@ namespace pushid {
 // beside PREFIX/bin, where the programs are; in the build folder alike (apps/CMakeLists.txt).
 inline constexpr char kShippedPrefix[] = "pushid:";
 
-struct ModelFlags {
-  std::string file;  // that pushid-fit --model_out wrote
-  std::string set;   // what-if values, name=value comma-separated
-};
-ModelFlags ModelFlagsFromCommandLine();
+inline bool IsShipped() { return FLAGS_model.rfind(kShippedPrefix, 0) == 0; }
+
+// That pushid-fit --model_out wrote; empty: none is named.
+inline std::string ModelFile() {
+  if (!IsShipped()) return FLAGS_model;
+  const std::string name = FLAGS_model.substr(sizeof kShippedPrefix - 1);
+  return OwnFolder() + "/../share/pushid/models/" + name + ".json";
+}
+
+inline FittedModel ReadFlaggedModel() {
+  Result<FittedModel> read = ReadFittedModel(ModelFile());
+  if (!IsShipped()) return OrFail(std::move(read));
+  if (!read.ok()) {
+    throw Error{"--model=" + FLAGS_model +
+                " is no model that comes with the programs; there is pushid:synthetic_group (" +
+                read.error().ToString() + ")"};
+  }
+  LOG(WARNING) << FLAGS_model
+               << " was fitted to synthetic people (pushid-simulate), not to recorded ones: it "
+                  "shows what the programs do; fit your own recordings for numbers about people";
+  return std::move(read).value();
+}
 
 // Throws without --model; `why` says what it must name, or what needs it.
-void RequireModel(const std::string& why = "give a file that pushid-fit --model_out wrote");
+inline void RequireModel(const std::string& why = "give a file that pushid-fit --model_out wrote") {
+  Require("model", FLAGS_model, why);
+}
 
 // The model of --model with the values of --set.
-IdentifiedModel LoadFlaggedModel();
+inline IdentifiedModel LoadFlaggedModel() {
+  RequireModel();
+  const FittedModel read = ReadFlaggedModel();
+  IdentifiedModel model = ModelOf(read.fit);
+  model.source = FLAGS_model;
+  OrFail(SetValues(FLAGS_set, &model));
+  return model;
+}
 
 // Several what-ifs at once: --set=mu=10 --set=mu=60,a_x=-5.
 inline constexpr char kBetweenSets = ';';
@@ -36,6 +77,19 @@ struct WhatIf {
 
 // The model of --model as it was fitted, and then with each --set; main joins them by ;
 // (JoinRepeated).
-std::vector<WhatIf> LoadWhatIfs();
+inline std::vector<WhatIf> LoadWhatIfs() {
+  RequireModel();
+  const FittedModel read = ReadFlaggedModel();
+  IdentifiedModel fitted = ModelOf(read.fit);
+  fitted.source = ModelFile();
+  std::vector<WhatIf> what_ifs = {{"", fitted}};
+  std::stringstream sets(FLAGS_set);
+  for (std::string set; std::getline(sets, set, kBetweenSets);) {
+    WhatIf one{set, fitted};
+    OrFail(SetValues(set, &one.model));
+    what_ifs.push_back(std::move(one));
+  }
+  return what_ifs;
+}
 
 }  // namespace pushid

@@ -49,7 +49,8 @@ LoadOptions LoadOptionsOfFlags() {
 // Ids of the fitted recordings, each once; none where the flags choose others.
 std::vector<std::string> FittedIds(const FitResult& fit) {
   std::vector<std::string> ids;
-  if (RecordingFlagsFromCommandLine().chosen || !FLAGS_leave_out.empty()) return ids;
+  const bool all = FLAGS_ids.empty() && FLAGS_leave_out.empty();
+  if (!all || FLAGS_setting != LoadOptions{}.setting) return ids;
   // A replica of a bootstrap has a recording several times.
   std::set<std::string> seen;
   for (const FittedRecording& fitted : fit.recordings) {
@@ -59,11 +60,6 @@ std::vector<std::string> FittedIds(const FitResult& fit) {
 }
 
 }  // namespace
-
-RecordingFlags RecordingFlagsFromCommandLine() {
-  const bool chosen = !FLAGS_ids.empty() || FLAGS_setting != LoadOptions{}.setting;
-  return {FLAGS_recordings, FLAGS_setting, SplitList(FLAGS_ids), chosen};
-}
 
 void LoadAs(const std::map<std::string, std::string>& configuration) {
   const bool unit_given = Given("length_unit") || Given("length_scale");

@@ -15,14 +15,6 @@ DECLARE_string(setting);
 
 namespace pushid {
 
-struct RecordingFlags {
-  std::string manifest;          // manifest.json of the recordings, or several, comma-separated
-  std::string setting;           // which of them, as LoadOptions has it
-  std::vector<std::string> ids;  // only these; empty: all of the setting
-  bool chosen = false;           // by setting or id: not simply all of the manifest
-};
-RecordingFlags RecordingFlagsFromCommandLine();
-
 // The manifest of --recordings, merged where there are several; read once in a run.
 const Result<Manifest>& FlaggedManifest();
 
@@ -57,18 +49,5 @@ Provenance ProvenanceOfRun();
 
 // Throws where a recording has no push: without one there is nothing to learn from.
 void CheckPushed(const std::vector<Recording>& recordings);
-
-// --overwrite (overwrite_flag.cc), for programs whose outputs a person may have edited or cannot
-// make again.
-bool OverwriteGiven();
-
-// An Error where the file is there and --overwrite is not given. flag names the file. besides: what
-// else may be done ("; --update keeps ...").
-MaybeError CheckNew(const std::string& flag, const std::string& file,
-                    const std::string& besides = "");
-
-// As above, for a folder of recordings that pushid-simulate writes: --overwrite replaces only its
-// earlier output, real recordings stay.
-MaybeError CheckOutputFolder(const std::string& flag, const std::string& folder);
 
 }  // namespace pushid

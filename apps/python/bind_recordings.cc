@@ -6,9 +6,9 @@
 
 #include "apps/python/bindings.h"
 #include "datasets/inspection/findings.h"
-#include "datasets/loading/recording_from_tracks.h"
+#include "datasets/loading/motion_tracks.h"
 #include "datasets/manifest/recording.h"
-#include "datasets/sensors/force_platform.h"
+#include "datasets/sensors/force_sensors.h"
 #include "ident/fit/fit_setup.h"
 #include "ident/parameters/json_archive.h"
 #include "ident/push/push_estimation.h"

@@ -12,7 +12,6 @@
 
 #include "datasets/files/error.h"
 #include "datasets/files/names.h"
-#include "datasets/loading/warning.h"
 #include "ident/prediction/prediction.h"
 #include "ident/pushid.h"
 

@@ -1,11 +1,12 @@
-// datasets: errors as values. A reader returns Result<T>: either the thing it read, or an Error
-// that says what is wrong, where, and what to do. User input never aborts the program.
+// datasets: errors and warnings as values. A reader returns Result<T>: either the thing it read, or
+// an Error that says what is wrong, where, and what to do. User input never aborts the program.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 namespace pushid {
 
@@ -43,5 +44,25 @@ class [[nodiscard]] Result {
 
 // The outcome of something that yields nothing but may fail: nullopt means done.
 using MaybeError = std::optional<Error>;
+
+// What looks unusual but can be lived with.
+struct Warning {
+  std::string text;            // the sentence
+  std::string recording = {};  // id, where it is of one
+  std::string of_many = {};    // what it says of several: "the file has gaps"
+
+  Warning() = default;
+  // A warning about no single recording.
+  Warning(std::string sentence)
+      : text(std::move(sentence)) {}                 // NOLINT(google-explicit-constructor)
+  Warning(const char* sentence) : text(sentence) {}  // NOLINT(google-explicit-constructor)
+  Warning(std::string sentence, std::string id, std::string same)
+      : text(std::move(sentence)), recording(std::move(id)), of_many(std::move(same)) {}
+};
+using Warnings = std::vector<Warning>;
+
+// Warnings that say the same of several recordings become one: "in 32 recordings (a, b, c, ...):
+// the file has gaps". Equal ones become one with how often. In the order of their first.
+std::vector<std::string> GroupedWarnings(const Warnings& warnings);
 
 }  // namespace pushid

@@ -8,6 +8,7 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
+#include "datasets/files/kept_json.h"
 #include "models/enum_names.h"
 
 namespace pushid {
@@ -153,13 +154,6 @@ Error SyntaxError(const std::string& path, const std::string& text) {
   return error;
 }
 
-template <typename Json>
-MaybeError Write(const std::string& path, const Json& content, int indent) {
-  std::string text = content.dump(indent, ' ', false, Json::error_handler_t::replace);
-  text += '\n';
-  return WriteFileAtomically(path, text);
-}
-
 using ObjectKeys = std::vector<const MissingKey*>;  // of one object
 
 // The missing keys by object, in the order in which objects first lack something.
@@ -232,12 +226,9 @@ Result<JsonDocument> ReadJsonDocument(const std::string& path) {
   return document;
 }
 
-MaybeError WriteJson(const std::string& path, const nlohmann::json& content, int indent) {
-  return Write(path, content, indent);
-}
-
 MaybeError WriteJson(const std::string& path, const nlohmann::ordered_json& content, int indent) {
-  return Write(path, content, indent);
+  constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
+  return WriteFileAtomically(path, content.dump(indent, ' ', false, kReplace) + '\n');
 }
 
 std::string MissingText(const std::vector<MissingKey>& missing) {
@@ -258,5 +249,17 @@ std::string MissingText(const std::vector<MissingKey>& missing) {
   }
   return text;
 }
+
+KeptJson::KeptJson() : KeptJson(nlohmann::ordered_json::object()) {}
+KeptJson::KeptJson(nlohmann::ordered_json json)
+    : json_(std::make_unique<nlohmann::ordered_json>(std::move(json))) {}
+KeptJson::KeptJson(const KeptJson& other) : KeptJson(*other) {}
+KeptJson::KeptJson(KeptJson&& other) noexcept = default;
+KeptJson& KeptJson::operator=(const KeptJson& other) {
+  json_ = std::make_unique<nlohmann::ordered_json>(*other);
+  return *this;
+}
+KeptJson& KeptJson::operator=(KeptJson&& other) noexcept = default;
+KeptJson::~KeptJson() = default;
 
 }  // namespace pushid

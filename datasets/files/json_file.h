@@ -1,11 +1,19 @@
-// datasets: JSON files in and out, with errors that name line and column.
+// datasets: JSON files in and out, with errors that name line and column, and typed values taken
+// out of their objects.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/files/names.h"
+#include "datasets/files/number_text.h"
+#include "models/enum_names.h"
 
 namespace pushid {
 
@@ -38,8 +46,154 @@ Result<JsonDocument> ReadJsonDocument(const std::string& path);
 // Writes atomically, indented by `indent` spaces, with a newline at the end. Doubles are written so
 // that they read back the same. NaN and infinity have no JSON and come out as null: say them in
 // words instead. Bytes that are not UTF-8 are replaced.
-MaybeError WriteJson(const std::string& path, const nlohmann::json& content, int indent = 2);
 MaybeError WriteJson(const std::string& path, const nlohmann::ordered_json& content,
                      int indent = 2);
+
+// "60", "\"abc\"", "[...]": a value as a message shows it.
+inline std::string Shown(const nlohmann::ordered_json& value) {
+  if (value.is_object()) return "an object";
+  if (value.is_array()) return "a list";
+  return Quoted(value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+// Takes typed values out of one JSON object and remembers every required key that is missing and
+// the first other thing that is wrong, so that a reader lists its keys one after the other and asks
+// once at the end.
+class JsonFields {
+ public:
+  // `label` begins every message: "recording 'single_X05_00'".
+  JsonFields(const JsonDocument& document, const nlohmann::ordered_json& object,
+             std::string pointer, std::string label)
+      : document_(document),
+        object_(object),
+        pointer_(std::move(pointer)),
+        label_(std::move(label)) {
+    if (!object_.is_object()) Fail("", "must be an object { }, not " + Shown(object_));
+  }
+
+  bool Has(const char* key) const {
+    if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) asked_.emplace_back(key);
+    return object_.is_object() && object_.contains(key);
+  }
+  const nlohmann::ordered_json& At(const char* key) const { return object_.at(key); }
+  std::string Pointer(const std::string& key) const {
+    return key.empty() ? pointer_ : pointer_ + "/" + key;
+  }
+  const std::string& label() const { return label_; }
+  void set_label(std::string label) { label_ = std::move(label); }
+  // One error that lists all missing keys; otherwise the first other mistake.
+  MaybeError error() const {
+    if (missing_.empty()) return error_;
+    const MissingKey& first = missing_.front();
+    return document_.ErrorAt(first.pointer + "/" + first.key, MissingText(missing_));
+  }
+  bool failed() const { return error_ || !missing_.empty(); }
+  // Something else than missing keys.
+  bool is_wrong() const { return error_.has_value(); }
+
+  void Fail(const std::string& key, const std::string& problem) {
+    if (error_) return;
+    error_ = document_.ErrorAt(Pointer(key),
+                               label_ + ": " + (key.empty() ? problem : key + " " + problem));
+  }
+  void Fail(const MaybeError& error) {
+    if (!error_) error_ = error;
+  }
+  // Takes over the mistakes of an object inside this one.
+  void Add(const JsonFields& inner) {
+    missing_.insert(missing_.end(), inner.missing_.begin(), inner.missing_.end());
+    Fail(inner.error_);
+  }
+
+  // The keys that were asked for, which are those that its reader knows.
+  const std::vector<std::string>& asked() const { return asked_; }
+
+  // Called after all keys were read: unknown keys are mistakes, and are reported before all others,
+  // since they would be ignored silently.
+  void OnlyAsked() {
+    if (!object_.is_object()) return;
+    for (const auto& [key, value] : object_.items()) {
+      if (std::find(asked_.begin(), asked_.end(), key) != asked_.end()) continue;
+      error_.reset();
+      Fail(key, "is not known; there may be " + ListOfNames(asked_));
+      return;
+    }
+  }
+
+  bool Require(const char* key, const std::string& what) {
+    if (Has(key)) return true;
+    if (object_.is_object()) missing_.push_back({label_, pointer_, key, what});
+    return false;
+  }
+
+  std::string Text(const char* key, const std::string& what) {
+    return Require(key, what) ? OptionalText(key, "") : "";
+  }
+
+  std::string OptionalText(const char* key, const std::string& fallback) {
+    if (!Has(key)) return fallback;
+    if (!At(key).is_string()) {
+      Fail(key, "must be text in quotes, not " + Shown(At(key)));
+      return fallback;
+    }
+    return At(key).get<std::string>();
+  }
+
+  double Number(const char* key, const std::string& what) {
+    if (!Require(key, what)) return 0.0;
+    if (!At(key).is_number()) {
+      Fail(key, "must be " + what + ", not " + Shown(At(key)));
+      return 0.0;
+    }
+    return At(key).get<double>();
+  }
+
+  double OptionalNumber(const char* key, const std::string& what, double fallback) {
+    return Has(key) ? Number(key, what) : fallback;
+  }
+  // A whole number in [lowest, highest].
+  int Whole(const char* key, const std::string& what, int lowest, int highest) {
+    const double value = Number(key, what);
+    if (failed()) return lowest;
+    if (std::floor(value) != value || value < lowest || value > highest) {
+      Fail(key, "is " + Shown(At(key)) + "; it must be " + what);
+      return lowest;
+    }
+    return static_cast<int>(value);
+  }
+
+  int OptionalWhole(const char* key, const std::string& what, int lowest, int highest,
+                    int fallback) {
+    return Has(key) ? Whole(key, what, lowest, highest) : fallback;
+  }
+
+  // The list under `key`, or an empty one.
+  const nlohmann::ordered_json& List(const char* key) {
+    static const nlohmann::ordered_json kEmpty = nlohmann::ordered_json::array();
+    if (!Has(key)) return kEmpty;
+    if (At(key).is_array()) return At(key);
+    Fail(key, "must be a list [ ], not " + Shown(At(key)));
+    return kEmpty;
+  }
+
+  // A choice by its name (models/enum_names.h).
+  template <typename E>
+  E Choice(const char* key, E fallback) {
+    if (!Has(key)) return fallback;
+    const std::string name = OptionalText(key, "");
+    const std::optional<E> choice = FromName<E>(name);
+    if (!choice) Fail(key, "is " + Quoted(name) + "; it must be " + AnyName<E>());
+    return choice.value_or(fallback);
+  }
+
+ private:
+  const JsonDocument& document_;
+  const nlohmann::ordered_json& object_;
+  std::string pointer_;
+  std::string label_;
+  mutable std::vector<std::string> asked_;
+  std::vector<MissingKey> missing_;
+  MaybeError error_;
+};
 
 }  // namespace pushid

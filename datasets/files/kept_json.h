@@ -1,4 +1,4 @@
-// datasets: JSON that is kept and passed on unread.
+// datasets: JSON that is kept and passed on unread (json_file.cc).
 #pragma once
 
 #include <memory>

@@ -1,12 +1,15 @@
+// datasets: names in messages, and naming patterns of files.
 #include "datasets/files/names.h"
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <numeric>
 #include <sstream>
 
-namespace pushid {
+#include "datasets/files/number_text.h"
 
+namespace pushid {
 std::string ListOfNames(const std::vector<std::string>& names, std::size_t most,
                         const std::string& plural) {
   if (names.size() <= most) return Joined(names);
@@ -85,6 +88,126 @@ std::vector<std::string> SplitList(const std::string& text, char separator) {
   std::istringstream list(text);
   for (std::string word; std::getline(list, word, separator);) words.push_back(word);
   return words;
+}
+
+namespace {
+
+// Patterns with many names can be fitted in very many ways; a file name needs few.
+constexpr int kMostTries = 100000;
+
+}  // namespace
+
+Result<NamePattern> NamePattern::Parse(const std::string& text) {
+  NamePattern pattern;
+  std::string plain;
+  const auto end_plain = [&] {
+    if (!plain.empty()) pattern.pieces_.push_back({Piece::kText, plain});
+    plain.clear();
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '*') {
+      end_plain();
+      pattern.pieces_.push_back({Piece::kAnything, ""});
+    } else if (text[i] == '{') {
+      const std::size_t end = text.find_first_of("{}", i + 1);
+      if (end == std::string::npos || text[end] != '}' || end == i + 1) {
+        return Error{"the pattern " + Quoted(text) + " has a { without a name, as in {subject}"};
+      }
+      end_plain();
+      const std::string name = text.substr(i + 1, end - i - 1);
+      pattern.pieces_.push_back({Piece::kName, name});
+      if (!pattern.Has(name)) pattern.names_.push_back(name);
+      i = end;
+    } else if (text[i] == '}') {
+      return Error{"the pattern " + Quoted(text) + " has a } without a {"};
+    } else {
+      plain += text[i];
+    }
+  }
+  end_plain();
+  if (pattern.names_.empty()) {
+    return Error{"the pattern " + Quoted(text) +
+                 " contains no names; {subject}, for instance, stands for the person's id"};
+  }
+  return pattern;
+}
+
+bool NamePattern::Has(const std::string& name) const {
+  return std::find(names_.begin(), names_.end(), name) != names_.end();
+}
+
+bool NamePattern::HasStar() const {
+  return std::any_of(pieces_.begin(), pieces_.end(),
+                     [](const Piece& piece) { return piece.kind == Piece::kAnything; });
+}
+
+bool NamePattern::MatchFrom(std::size_t index, const std::string& path, std::size_t at,
+                            NameValues* values, int* tries) const {
+  if (++*tries > kMostTries) return false;
+  if (index == pieces_.size()) return at == path.size();
+  const Piece& piece = pieces_[index];
+  if (piece.kind == Piece::kText) {
+    return path.compare(at, piece.text.size(), piece.text) == 0 &&
+           MatchFrom(index + 1, path, at + piece.text.size(), values, tries);
+  }
+  if (piece.kind == Piece::kName) {
+    const auto known = values->find(piece.text);
+    if (known != values->end()) {
+      const std::string value = known->second;  // what follows may change the map
+      return path.compare(at, value.size(), value) == 0 &&
+             MatchFrom(index + 1, path, at + value.size(), values, tries);
+    }
+  }
+  const std::size_t fewest = piece.kind == Piece::kName ? 1 : 0;
+  for (std::size_t length = 0; at + length <= path.size(); ++length) {
+    if (length > 0 && path[at + length - 1] == '/') return false;
+    if (length < fewest) continue;
+    if (piece.kind == Piece::kName) (*values)[piece.text] = path.substr(at, length);
+    if (MatchFrom(index + 1, path, at + length, values, tries)) return true;
+    if (piece.kind == Piece::kName) values->erase(piece.text);
+  }
+  return false;
+}
+
+std::optional<NameValues> NamePattern::Match(const std::string& path) const {
+  NameValues values;
+  int tries = 0;
+  if (!MatchFrom(0, path, 0, &values, &tries)) return std::nullopt;
+  return values;
+}
+
+std::optional<std::string> NamePattern::Fill(const NameValues& values) const {
+  std::string text;
+  for (const Piece& piece : pieces_) {
+    if (piece.kind == Piece::kAnything) return std::nullopt;
+    if (piece.kind == Piece::kText) {
+      text += piece.text;
+      continue;
+    }
+    const auto value = values.find(piece.text);
+    if (value == values.end()) return std::nullopt;
+    text += value->second;
+  }
+  return text;
+}
+
+namespace fs = std::filesystem;
+
+Result<std::vector<std::string>> FilesBelow(const std::string& folder) {
+  std::error_code failed;
+  if (!fs::is_directory(folder, failed)) return Error{"there is no such folder", folder};
+  std::vector<std::string> files;
+  fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied,
+                                      failed);
+  for (; !failed && it != fs::recursive_directory_iterator(); it.increment(failed)) {
+    std::error_code ignored;
+    if (it->is_regular_file(ignored)) {
+      files.push_back(it->path().lexically_relative(folder).generic_string());
+    }
+  }
+  if (failed) return Error{"cannot look through it: " + failed.message(), folder};
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 }  // namespace pushid

@@ -1,7 +1,9 @@
-// datasets: names: lists of them in messages, choices by name, and the closest name to a misspelt
-// one.
+// datasets: names: lists of them in messages, choices by name, the closest name to a misspelt one,
+// and naming patterns of files.
 #pragma once
 
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,5 +59,42 @@ MaybeError ParseName(const std::string& flag, std::string_view text, E* value) {
   *value = *found;
   return std::nullopt;
 }
+
+using NameValues = std::map<std::string, std::string>;
+
+// A naming pattern of recordings: "{setting}/{subject}_{magnitude}_{take}.c3d".
+//
+// A name in braces stands for one or more characters other than /, as few as make the whole fit;
+// the same name twice means the same text. * stands for any characters other than /, that do not
+// matter. Everything else stands for itself.
+class NamePattern {
+ public:
+  // Errors: a brace that is not closed or closes nothing, an empty name, no name at all.
+  static Result<NamePattern> Parse(const std::string& text);
+
+  const std::vector<std::string>& names() const { return names_; }  // each once, in order
+  bool Has(const std::string& name) const;
+  bool HasStar() const;
+
+  // The values of all names where `path` fits entirely.
+  std::optional<NameValues> Match(const std::string& path) const;
+
+  // The pattern with its names replaced; nullopt where a value is missing or the pattern has a *.
+  std::optional<std::string> Fill(const NameValues& values) const;
+
+ private:
+  struct Piece {
+    enum Kind { kText, kName, kAnything } kind;
+    std::string text;  // or the name
+  };
+  bool MatchFrom(std::size_t piece, const std::string& path, std::size_t at, NameValues* values,
+                 int* tries) const;
+
+  std::vector<Piece> pieces_;
+  std::vector<std::string> names_;
+};
+
+// Every regular file below the folder, as sorted paths relative to it.
+Result<std::vector<std::string>> FilesBelow(const std::string& folder);
 
 }  // namespace pushid

@@ -6,6 +6,7 @@
 #include <limits>
 #include <unordered_set>
 
+#include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
 
@@ -230,6 +231,37 @@ Result<double> EvenTimeStep(const NumericTable& table, int time_column) {
     }
   }
   return step;
+}
+
+MaybeError WriteNumericTable(const std::string& path, TableFormat format,
+                             const NumericTable& table) {
+  const bool storage = format == TableFormat::kStorage;
+  const char separator = storage ? '\t' : ',';
+  if (table.chosen.size() != table.names.size() || table.num_rows() == 0) {
+    return Error{"a table without rows, or with columns left out, is not written", path};
+  }
+  std::string text;
+  if (storage) {
+    text = "pushid\nversion=1\nnRows=" + std::to_string(table.num_rows()) +
+           "\nnColumns=" + std::to_string(table.names.size()) +
+           "\ninDegrees=" + (table.in_degrees ? "yes" : "no") + "\nendheader\n";
+  }
+  const std::size_t columns = table.names.size();
+  for (std::size_t i = 0; i < columns; ++i) {
+    text += table.names[i] + (i + 1 < columns ? separator : '\n');
+  }
+  for (int row = 0; row < table.num_rows(); ++row) {
+    for (std::size_t i = 0; i < columns; ++i) {
+      const double value = table.data[i][row];
+      if (std::isfinite(value)) {
+        AppendDouble(value, &text);
+      } else if (storage) {
+        text += "nan";
+      }
+      text += i + 1 < columns ? separator : '\n';
+    }
+  }
+  return WriteFileAtomically(path, text);
 }
 
 }  // namespace pushid

@@ -53,4 +53,8 @@ int FindTimeColumn(const std::vector<std::string>& names, const std::string& wan
 // Steps of a time column in s, or an Error where it does not ascend in even steps (1 %).
 Result<double> EvenTimeStep(const NumericTable& table, int time_column);
 
+// Writes all columns, atomically; NaN as an empty cell (CSV) or nan (storage).
+MaybeError WriteNumericTable(const std::string& path, TableFormat format,
+                             const NumericTable& table);
+
 }  // namespace pushid

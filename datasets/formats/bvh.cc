@@ -5,15 +5,274 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <unordered_set>
 
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/names.h"
+#include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
-#include "datasets/formats/bvh_header.h"
 
 namespace pushid {
 namespace {
+
+// The part of a file before its rows of numbers: HIERARCHY, Frames:, Frame Time:.
+struct BvhHeader {
+  BvhSkeleton skeleton;
+  std::int64_t num_frames = 0;  // as announced by `Frames:`, at least 1
+  double frame_time_s = 0.0;    // within the accepted range
+};
+
+bool IsBrace(char c) { return c == '{' || c == '}'; }
+
+// "joint 'Hips' lists Xposition twice"; empty where no channel is.
+std::string ListedTwice(const BvhJoint& joint) {
+  for (std::size_t i = 0; i < joint.channels.size(); ++i) {
+    const auto at = joint.channels.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find(joint.channels.begin(), at, *at) == at) continue;
+    return "joint " + Quoted(joint.name) + " lists " + NameOf(*at) + " twice";
+  }
+  return "";
+}
+
+// Reads tokens across lines, with a stack of open braces, which no depth of nesting overflows.
+class HierarchyParser {
+ public:
+  explicit HierarchyParser(LineReader* reader) : reader_(*reader) {}
+
+  Result<BvhSkeleton> Parse() {
+    if (!EqualsIgnoringCase(Next(), "HIERARCHY")) {
+      if (reader_.error()) return *reader_.error();
+      return reader_.ErrorHere("this is not a BVH file: it does not start with HIERARCHY");
+    }
+    while (true) {
+      const std::string_view token = Next();
+      if (token.empty()) {
+        if (reader_.error()) return *reader_.error();
+        return reader_.ErrorHere(
+            "the file ends inside the hierarchy, before MOTION: it is truncated");
+      }
+      const bool complete = EqualsIgnoringCase(token, "MOTION");
+      if (MaybeError failed = complete ? CheckComplete() : Take(token)) return *failed;
+      if (complete) return std::move(skeleton_);
+    }
+  }
+
+ private:
+  struct OpenBrace {
+    int joint;  // or the one that an End Site belongs to
+    bool end_site = false, has_offset = false, has_channels = false;
+  };
+
+  MaybeError Take(std::string_view token) {
+    if (EqualsIgnoringCase(token, "ROOT")) return OpenJoint(true);
+    if (EqualsIgnoringCase(token, "JOINT")) return OpenJoint(false);
+    if (EqualsIgnoringCase(token, "End")) return OpenEndSite();
+    if (EqualsIgnoringCase(token, "OFFSET")) return ParseOffset();
+    if (EqualsIgnoringCase(token, "CHANNELS")) return ParseChannels();
+    if (token == "}") return Close();
+    return reader_.ErrorHere(
+        Quoted(token) +
+        " is not expected in the hierarchy (ROOT, JOINT, End Site, OFFSET, CHANNELS, {, }, "
+        "MOTION are)");
+  }
+
+  // The next token of the file, a brace being one of its own; empty at the end.
+  std::string_view Next() {
+    while (true) {
+      while (!rest_.empty() && IsBlank(rest_.front())) rest_.remove_prefix(1);
+      if (!rest_.empty()) break;
+      if (!reader_.Next(&rest_)) return {};
+    }
+    std::size_t length = 0;
+    while (length < rest_.size() && !IsBlank(rest_[length]) && !IsBrace(rest_[length])) ++length;
+    const std::string_view token = rest_.substr(0, std::max<std::size_t>(length, 1));
+    rest_.remove_prefix(token.size());
+    return token;
+  }
+
+  MaybeError ExpectOpeningBrace(const std::string& what) {
+    const std::string_view token = Next();
+    if (token == "{") return std::nullopt;
+    return reader_.ErrorHere(
+        "a { must follow " + what +
+        (token.empty() ? "; the file is truncated" : ", not " + Quoted(token)));
+  }
+
+  MaybeError OpenJoint(bool root) {
+    const std::size_t brace = rest_.find_first_of("{}");
+    const std::string name(Trimmed(rest_.substr(0, brace)));
+    rest_ = brace == std::string_view::npos ? std::string_view() : rest_.substr(brace);
+    if (name.empty()) return reader_.ErrorHere("a joint has no name");
+    if (root != open_.empty()) {
+      return reader_.ErrorHere(root ? "ROOT " + name + " is inside another joint; is a } missing?"
+                                    : "JOINT " + name + " is outside of any ROOT");
+    }
+    if (!root && open_.back().end_site) {
+      return reader_.ErrorHere("JOINT " + name + " is inside an End Site");
+    }
+    if (!names_.insert(name).second) {
+      return reader_.ErrorHere("two joints are called " + Quoted(name) + "; names must be unique");
+    }
+    BvhJoint joint;
+    joint.name = name;
+    joint.parent = root ? -1 : open_.back().joint;
+    open_.push_back({static_cast<int>(skeleton_.joints.size())});
+    skeleton_.joints.push_back(std::move(joint));
+    return ExpectOpeningBrace("the joint's name");
+  }
+
+  MaybeError OpenEndSite() {
+    if (!EqualsIgnoringCase(Next(), "Site")) return reader_.ErrorHere("Site must follow End");
+    if (open_.empty() || open_.back().end_site) {
+      return reader_.ErrorHere("an End Site is outside of any joint");
+    }
+    open_.push_back({open_.back().joint, true});
+    return ExpectOpeningBrace("End Site");
+  }
+
+  MaybeError ParseOffset() {
+    if (open_.empty()) return reader_.ErrorHere("an OFFSET is outside of any joint");
+    Eigen::Vector3d offset;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string_view token = Next();
+      if (!ParseDouble(token, &offset[axis])) {
+        return reader_.ErrorHere("OFFSET takes three numbers: " + NumberProblem(token));
+      }
+    }
+    OpenBrace& open = open_.back();
+    if (open.has_offset) return reader_.ErrorHere("a second OFFSET for the same joint");
+    open.has_offset = true;
+    BvhJoint& joint = skeleton_.joints[open.joint];
+    if (open.end_site) {
+      joint.end_sites.push_back(offset);
+    } else {
+      joint.offset = offset;
+    }
+    return std::nullopt;
+  }
+
+  MaybeError ParseChannels() {
+    if (open_.empty() || open_.back().end_site) {
+      return reader_.ErrorHere("CHANNELS are outside of any joint");
+    }
+    BvhJoint& joint = skeleton_.joints[open_.back().joint];
+    if (open_.back().has_channels) return reader_.ErrorHere("a second CHANNELS for the same joint");
+    open_.back().has_channels = true;
+    const std::string_view count_token = Next();
+    std::int64_t count = 0;
+    if (!ParseInteger(count_token, &count) || count < 0 || count > 6) {
+      return reader_.ErrorHere("CHANNELS takes a number from 0 to 6 first, not " +
+                               Quoted(count_token));
+    }
+    constexpr auto kNames = Names(BvhChannel{});
+    for (std::int64_t i = 0; i < count; ++i) {
+      const std::string_view token = Next();
+      const auto* const row = std::find_if(kNames.begin(), kNames.end(), [&](const auto& named) {
+        return EqualsIgnoringCase(token, named.name);
+      });
+      if (row == kNames.end()) {
+        return reader_.ErrorHere("joint " + Quoted(joint.name) + ": " + Quoted(token) +
+                                 " is not a channel; " + std::to_string(count) +
+                                 " of Xposition, Yposition, Zposition, Xrotation, Yrotation, "
+                                 "Zrotation must follow");
+      }
+      joint.channels.push_back(row->value);
+      if (const std::string twice = ListedTwice(joint); !twice.empty()) {
+        return reader_.ErrorHere(twice);
+      }
+    }
+    return std::nullopt;
+  }
+
+  MaybeError Close() {
+    if (open_.empty()) return reader_.ErrorHere("a } has no matching {");
+    const OpenBrace closed = open_.back();
+    open_.pop_back();
+    if (closed.has_offset) return std::nullopt;
+    return reader_.ErrorHere(
+        (closed.end_site ? "an End Site" : "joint " + Quoted(skeleton_.joints[closed.joint].name)) +
+        " has no OFFSET");
+  }
+
+  MaybeError CheckComplete() {
+    if (!open_.empty()) {
+      return reader_.ErrorHere("MOTION is inside the hierarchy: " + std::to_string(open_.size()) +
+                               " closing } missing");
+    }
+    if (skeleton_.joints.empty()) return reader_.ErrorHere("the hierarchy has no ROOT");
+    if (skeleton_.num_channels() == 0) return reader_.ErrorHere("no joint has any channels");
+    if (!Trimmed(rest_).empty()) {
+      return reader_.ErrorHere(Quoted(Trimmed(rest_)) + " follows MOTION");
+    }
+    return std::nullopt;
+  }
+
+  LineReader& reader_;
+  std::string_view rest_;  // what is left of the current line
+  BvhSkeleton skeleton_;
+  std::vector<OpenBrace> open_;
+  std::unordered_set<std::string> names_;
+};
+
+// A line "<words>: <value>"; an Error when the words differ.
+Result<std::string> ReadField(LineReader* reader, const std::string& words) {
+  std::string_view line;
+  if (!reader->NextNonBlank(&line)) {
+    if (reader->error()) return *reader->error();
+    return reader->ErrorHere("the file ends where '" + words + ":' should be: it is truncated");
+  }
+  const std::size_t colon = line.find(':');
+  std::string key;
+  for (std::string_view rest = line.substr(0, colon); !(rest = Trimmed(rest)).empty();) {
+    if (!key.empty()) key += ' ';
+    key += NextToken(&rest);
+  }
+  if (colon == std::string_view::npos || !EqualsIgnoringCase(key, words)) {
+    return reader->ErrorHere("'" + words + ":' is expected here, not " + Quoted(Trimmed(line)));
+  }
+  return std::string(Trimmed(line.substr(colon + 1)));
+}
+
+// The reason why a frame time is not accepted, or "" when it is.
+std::string FrameTimeProblem(double frame_time_s) {
+  // A relative hair of slack: 0.0001 s is 10000 Hz whichever way it rounds.
+  constexpr double kSlack = 1e-9;
+  if (frame_time_s >= (1.0 - kSlack) / kMaxFramesPerSecond &&
+      frame_time_s <= (1.0 + kSlack) / kMinFramesPerSecond) {
+    return "";
+  }
+  return "the frame time is " + Rounded(frame_time_s) + " s; accepted are " +
+         Rounded(1.0 / kMaxFramesPerSecond) + " s to " + Rounded(1.0 / kMinFramesPerSecond) +
+         " s, that is " + Rounded(kMaxFramesPerSecond) + " to " + Rounded(kMinFramesPerSecond) +
+         " frames per second";
+}
+
+// Opens the file and leaves `reader` before the first row. Keywords are matched whatever their
+// case; line breaks inside the hierarchy are free; a joint's name is the rest of its line and may
+// contain spaces.
+Result<BvhHeader> ReadBvhHeader(const std::string& path, LineReader* reader) {
+  if (MaybeError failed = reader->Open(path)) return *std::move(failed);
+  Result<BvhSkeleton> skeleton = HierarchyParser(reader).Parse();
+  if (!skeleton.ok()) return skeleton.error();
+  BvhHeader header;
+  header.skeleton = std::move(skeleton.value());
+
+  Result<std::string> frames = ReadField(reader, "Frames");
+  if (!frames.ok()) return frames.error();
+  if (!ParseInteger(frames.value(), &header.num_frames) || header.num_frames < 1 ||
+      header.num_frames > std::numeric_limits<int>::max()) {
+    return reader->ErrorHere("Frames: must be a whole number of 1 or more, not " +
+                             Quoted(frames.value()));
+  }
+  Result<std::string> frame_time = ReadField(reader, "Frame Time");
+  if (!frame_time.ok()) return frame_time.error();
+  if (!ParseDouble(frame_time.value(), &header.frame_time_s)) {
+    return reader->ErrorHere("Frame Time: " + NumberProblem(frame_time.value()));
+  }
+  const std::string problem = FrameTimeProblem(header.frame_time_s);
+  if (!problem.empty()) return reader->ErrorHere(problem);
+  return header;
+}
 
 constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
 constexpr double kUpright = 1e-9;  // the cosine below which the second angle is 90 degrees
@@ -48,13 +307,7 @@ std::string SkeletonProblem(const BvhSkeleton& skeleton) {
     for (const Eigen::Vector3d& end_site : joint.end_sites) {
       if (!end_site.allFinite()) return "an end site of " + Quoted(joint.name) + " is not finite";
     }
-    for (std::size_t a = 0; a < joint.channels.size(); ++a) {
-      for (std::size_t b = 0; b < a; ++b) {
-        if (joint.channels[a] == joint.channels[b]) {
-          return "joint " + Quoted(joint.name) + " lists " + NameOf(joint.channels[a]) + " twice";
-        }
-      }
-    }
+    if (const std::string twice = ListedTwice(joint); !twice.empty()) return twice;
   }
   if (skeleton.num_channels() == 0) return "no joint has any channels";
   return "";
@@ -76,67 +329,45 @@ std::string MotionProblem(const BvhMotion& motion) {
   return FrameTimeProblem(motion.frame_time_s);
 }
 
-class HierarchyWriter {
- public:
-  HierarchyWriter(const BvhMotion& motion, LengthUnit unit) : motion_(motion), unit_(unit) {}
-
-  std::string Write() {
-    text_ = "HIERARCHY\n";
-    const std::vector<BvhJoint>& joints = motion_.skeleton.joints;
-    std::vector<int> path;
-    for (std::size_t i = 0; i < joints.size(); ++i) {
-      while (!path.empty() && path.back() != joints[i].parent) {
-        path.pop_back();
-        Line(path.size(), "}");
-      }
-      const bool leaf = i + 1 == joints.size() || joints[i + 1].parent != static_cast<int>(i);
-      Open(joints[i], path.size(), leaf);
-      path.push_back(static_cast<int>(i));
-    }
-    while (!path.empty()) {
-      path.pop_back();
-      Line(path.size(), "}");
-    }
-    return std::move(text_);
-  }
-
- private:
-  void Line(std::size_t depth, const std::string& content) {
-    text_.append(depth, '\t');
-    text_ += content + "\n";
-  }
-
-  std::string OffsetText(const Eigen::Vector3d& offset) const {
-    std::string text = "OFFSET";
-    for (int axis = 0; axis < 3; ++axis) {
-      text += ' ';
-      AppendDouble(ConvertLength(offset[axis], motion_.length_unit, unit_), &text);
-    }
-    return text;
-  }
-
-  void Open(const BvhJoint& joint, std::size_t depth, bool leaf) {
-    Line(depth, (depth == 0 ? "ROOT " : "JOINT ") + joint.name);
-    Line(depth, "{");
-    Line(depth + 1, OffsetText(joint.offset));
+std::string HierarchyText(const BvhSkeleton& skeleton) {
+  std::string text = "HIERARCHY\n";
+  const auto line = [&text](std::size_t depth, const std::string& content) {
+    text += std::string(depth, '\t') + content + "\n";
+  };
+  const auto offset = [&](std::size_t depth, const Eigen::Vector3d& lengths) {
+    std::string numbers = "OFFSET";
+    for (double length : lengths) numbers += " " + DoubleText(length);
+    line(depth, numbers);
+  };
+  std::vector<int> path;
+  const auto close_up_to = [&](int parent) {
+    for (; !path.empty() && path.back() != parent; line(path.size(), "}")) path.pop_back();
+  };
+  const std::vector<BvhJoint>& joints = skeleton.joints;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const BvhJoint& joint = joints[i];
+    close_up_to(joint.parent);
+    const std::size_t depth = path.size();
+    line(depth, (depth == 0 ? "ROOT " : "JOINT ") + joint.name);
+    line(depth, "{");
+    offset(depth + 1, joint.offset);
     std::string channels = "CHANNELS " + std::to_string(joint.channels.size());
     for (BvhChannel channel : joint.channels) channels += " " + NameOf(channel);
-    Line(depth + 1, channels);
-    for (const Eigen::Vector3d& end_site : joint.end_sites) EndSite(end_site, depth + 1);
-    if (leaf && joint.end_sites.empty()) EndSite(Eigen::Vector3d::Zero(), depth + 1);
+    line(depth + 1, channels);
+    std::vector<Eigen::Vector3d> ends = joint.end_sites;
+    const bool leaf = i + 1 == joints.size() || joints[i + 1].parent != static_cast<int>(i);
+    if (leaf && ends.empty()) ends.emplace_back(Eigen::Vector3d::Zero());
+    for (const Eigen::Vector3d& end : ends) {
+      line(depth + 1, "End Site");
+      line(depth + 1, "{");
+      offset(depth + 2, end);
+      line(depth + 1, "}");
+    }
+    path.push_back(static_cast<int>(i));
   }
-
-  void EndSite(const Eigen::Vector3d& offset, std::size_t depth) {
-    Line(depth, "End Site");
-    Line(depth, "{");
-    Line(depth + 1, OffsetText(offset));
-    Line(depth, "}");
-  }
-
-  const BvhMotion& motion_;
-  const LengthUnit unit_;
-  std::string text_;
-};
+  close_up_to(-1);
+  return text;
+}
 
 // The joint and channel that the value at `index` of a row belongs to, for messages.
 std::string ChannelName(const BvhSkeleton& skeleton, int index) {
@@ -235,21 +466,6 @@ MaybeError ReadFrames(LineReader* reader, const BvhHeader& header, const std::ve
 std::size_t FramesToReserve(const LineReader& reader, const BvhHeader& header) {
   const std::int64_t possible = reader.file_size() / (2 * header.skeleton.num_channels()) + 1;
   return static_cast<std::size_t>(std::min(header.num_frames, possible));
-}
-
-Result<std::vector<int>> ChooseJoints(const std::string& path, const BvhSkeleton& skeleton,
-                                      const BvhPositionOptions& options) {
-  if (options.choose_joints) return options.choose_joints(skeleton);
-  std::vector<int> chosen;
-  for (const std::string& name : options.joints) {
-    const int joint = skeleton.Find(name);
-    if (joint < 0) return UnknownNameError(path, "joint", skeleton.Names(), name);
-    chosen.push_back(joint);
-  }
-  if (options.joints.empty()) {
-    for (std::size_t i = 0; i < skeleton.joints.size(); ++i) chosen.push_back(static_cast<int>(i));
-  }
-  return chosen;
 }
 
 }  // namespace
@@ -379,41 +595,40 @@ void BvhKinematics::Positions(const double* row, Eigen::Vector3d* positions) {
   }
 }
 
-MaybeError WriteBvh(const std::string& path, const BvhMotion& motion, LengthUnit unit) {
+MaybeError WriteBvh(const std::string& path, const BvhMotion& motion) {
   const std::string problem = MotionProblem(motion);
   if (!problem.empty()) return Error{"the motion cannot be written: " + problem, path, 0};
-
-  std::vector<bool> is_length;  // per channel
-  for (const BvhJoint& joint : motion.skeleton.joints) {
-    for (BvhChannel channel : joint.channels) is_length.push_back(!IsRotation(channel));
-  }
   AtomicFile file;
   if (MaybeError failed = file.Open(path)) return failed;
-  file.Append(HierarchyWriter(motion, unit).Write());
+  file.Append(HierarchyText(motion.skeleton));
   file.Append("MOTION\nFrames: " + std::to_string(motion.num_frames()) +
               "\nFrame Time: " + DoubleText(motion.frame_time_s) + "\n");
+  const std::size_t channels = motion.skeleton.num_channels();
   std::string row;
   for (std::size_t i = 0; i < motion.values.size(); ++i) {
-    const std::size_t channel = i % is_length.size();
-    const double value = motion.values[i];
-    AppendDouble(is_length[channel] ? ConvertLength(value, motion.length_unit, unit) : value, &row);
-    row += channel + 1 == is_length.size() ? '\n' : ' ';
-    if (channel + 1 == is_length.size()) {
-      file.Append(row);
-      row.clear();
-    }
+    const bool last = (i + 1) % channels == 0;
+    AppendDouble(motion.values[i], &row);
+    row += last ? '\n' : ' ';
+    if (!last) continue;
+    file.Append(row);
+    row.clear();
   }
   return file.Commit();
 }
 
-Result<BvhMotion> ReadBvh(const std::string& path, const BvhReadOptions& options) {
+Result<double> ReadBvhFrameTime(const std::string& path) {
   LineReader reader;
-  if (MaybeError failed = reader.Open(path)) return *std::move(failed);
-  Result<BvhHeader> header = ReadBvhHeader(&reader);
+  const Result<BvhHeader> header = ReadBvhHeader(path, &reader);
+  if (!header.ok()) return header.error();
+  return header.value().frame_time_s;
+}
+
+Result<BvhMotion> ReadBvh(const std::string& path) {
+  LineReader reader;
+  Result<BvhHeader> header = ReadBvhHeader(path, &reader);
   if (!header.ok()) return header.error();
 
   BvhMotion motion;
-  motion.length_unit = options.length_unit;
   motion.frame_time_s = header.value().frame_time_s;
   motion.values.reserve(FramesToReserve(reader, header.value()) *
                         header.value().skeleton.num_channels());
@@ -429,21 +644,22 @@ Result<BvhMotion> ReadBvh(const std::string& path, const BvhReadOptions& options
 
 Result<BvhPositions> ReadBvhPositions(const std::string& path, const BvhPositionOptions& options) {
   LineReader reader;
-  if (MaybeError failed = reader.Open(path)) return *std::move(failed);
-  Result<BvhHeader> header = ReadBvhHeader(&reader);
+  Result<BvhHeader> header = ReadBvhHeader(path, &reader);
   if (!header.ok()) return header.error();
-  Result<std::vector<int>> chosen = ChooseJoints(path, header.value().skeleton, options);
-  if (!chosen.ok()) return chosen.error();
 
   BvhPositions result;
   result.frame_time_s = header.value().frame_time_s;
-  result.joints = chosen.value();
+  result.joints.resize(header.value().skeleton.joints.size());
+  std::iota(result.joints.begin(), result.joints.end(), 0);
+  if (options.choose_joints) {
+    Result<std::vector<int>> chosen = options.choose_joints(header.value().skeleton);
+    if (!chosen.ok()) return chosen.error();
+    result.joints = std::move(chosen.value());
+  }
   result.positions.resize(result.joints.size());
   for (auto& track : result.positions) track.reserve(FramesToReserve(reader, header.value()));
 
-  const double metres =
-      options.metres_per_unit > 0.0 ? options.metres_per_unit : MetresPer(options.length_unit);
-  BvhKinematics kinematics(header.value().skeleton, metres, result.joints);
+  BvhKinematics kinematics(header.value().skeleton, options.metres_per_unit, result.joints);
   int frame = 0;
   std::vector<Eigen::Vector3d> positions(result.joints.size());
   const auto take_row = [&](const std::vector<double>& values) {

@@ -10,9 +10,9 @@
 //   precedes
 //     rotation wherever the position channels stand in the list.
 //
-//   Result<BvhMotion> motion = ReadBvh("walk.bvh", {});                        // everything, raw
-//   Result<BvhPositions> p = ReadBvhPositions("walk.bvh", {LengthUnit::kMillimetre, {"Hips"}, {}});
-//   MaybeError failed = WriteBvh("copy.bvh", motion.value(), motion.value().length_unit);
+//   Result<BvhMotion> motion = ReadBvh("walk.bvh");                            // everything, raw
+//   Result<BvhPositions> p = ReadBvhPositions("walk.bvh");                     // of all joints, m
+//   MaybeError failed = WriteBvh("copy.bvh", motion.value());
 //
 // The readers are strict: a truncated file, a row too many or too few, a number that is not one,
 // NaN, infinity, an unknown channel or a duplicate name is an Error with file and line.
@@ -54,9 +54,9 @@ std::vector<BvhChannel> DefaultBvhChannels(bool with_position);
 struct BvhJoint {
   std::string name;
   int parent = -1;                                   // index of an earlier joint; -1 for a root
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  // length unit of the motion
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  // in the file's lengths
   std::vector<BvhChannel> channels;                  // in the order of the numbers in a row
-  std::vector<Eigen::Vector3d> end_sites;            // length unit; one for a leaf, as a rule
+  std::vector<Eigen::Vector3d> end_sites;            // one for a leaf, as a rule
 };
 
 // Joints in file order: depth first, so every parent precedes its children. Names are unique.
@@ -68,34 +68,27 @@ struct BvhSkeleton {
   std::vector<std::string> Names() const;
 };
 
-// A BVH file as it stands: lengths in `length_unit`, angles in degrees.
+// A BVH file as it stands: lengths in a unit that it does not say, angles in degrees.
 struct BvhMotion {
   BvhSkeleton skeleton;
-  LengthUnit length_unit = LengthUnit::kMillimetre;  // of offsets, end sites and position channels
   double frame_time_s = 0.0;
   std::vector<double> values;  // frame-major: num_channels() per frame, in file order
 
   int num_frames() const;
 };
 
-struct BvhReadOptions {
-  // The unit of the file's lengths, which BVH does not say; noted in the motion, not converted.
-  LengthUnit length_unit = LengthUnit::kMillimetre;
-};
-
 // Reads everything, including every channel value (8 bytes per number).
-Result<BvhMotion> ReadBvh(const std::string& path, const BvhReadOptions& options = {});
+Result<BvhMotion> ReadBvh(const std::string& path);
+
+// Seconds; no row is read.
+Result<double> ReadBvhFrameTime(const std::string& path);
 
 struct BvhPositionOptions {
-  // The unit of the file's lengths; positions are converted to metres.
-  LengthUnit length_unit = LengthUnit::kMillimetre;
-  // Names of the joints whose positions are wanted, in the order wanted; empty: all joints.
-  std::vector<std::string> joints;
-  // Decides instead of `joints` where it is set: called once with the skeleton, it returns indices
-  // of joints, which may depend on the skeleton.
+  // Metres in one of the file's lengths.
+  double metres_per_unit = MetresPer(LengthUnit::kMillimetre);
+  // Called once with the skeleton, it returns indices of the joints whose positions are wanted, in
+  // the order wanted; unset: all joints.
   std::function<Result<std::vector<int>>(const BvhSkeleton&)> choose_joints;
-  // Metres in one of the file's lengths, where that is no unit; 0: length_unit's.
-  double metres_per_unit = 0.0;
   // The frame whose channel values are kept as they stand; -1: none.
   int kept_frame = -1;
 };
@@ -117,11 +110,11 @@ struct BvhPositions {
 Result<BvhPositions> ReadBvhPositions(const std::string& path,
                                       const BvhPositionOptions& options = {});
 
-// Writes `motion` with its lengths in `unit` (normally motion.length_unit), atomically. Numbers are
-// the shortest that read back to the same double. An inconsistent motion (wrong number of values,
+// Writes `motion` as it stands, atomically. Numbers are the shortest that read back to the same
+// double. An inconsistent motion (wrong number of values,
 // joints not depth first, NaN, no frames, frame time out of range) is an Error. A leaf without an
 // end site gets one at its own place, which other programs insist on.
-MaybeError WriteBvh(const std::string& path, const BvhMotion& motion, LengthUnit unit);
+MaybeError WriteBvh(const std::string& path, const BvhMotion& motion);
 
 // Forward kinematics of a BVH skeleton: world positions from one row of channel values.
 // The conventions are those of bvh.h.
@@ -139,8 +132,6 @@ class BvhKinematics {
  public:
   // `joints` are valid indices into the skeleton, in the order of the output.
   BvhKinematics(const BvhSkeleton& skeleton, double metres_per_unit, std::vector<int> joints);
-  BvhKinematics(const BvhSkeleton& skeleton, LengthUnit unit, std::vector<int> joints)
-      : BvhKinematics(skeleton, MetresPer(unit), std::move(joints)) {}
 
   // `row` holds num_channels() values (file lengths, degrees); writes one position per chosen
   // joint, metres. Not const: the work space belongs to the object.

@@ -1,23 +1,173 @@
-// datasets: C3D files read.
+// datasets: C3D files read: the parameter section, events, force platforms, segments, frames.
 #include "datasets/formats/c3d.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "datasets/files/input_file.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/formats/c3d_parameters.h"
 
 namespace pushid {
 namespace {
+
+// "at byte 1234: ..." of the file at `path`.
+Error C3dError(const std::string& path, std::size_t at, const std::string& message) {
+  return {"at byte " + std::to_string(at) + ": " + message, path};
+}
+
+// Fixed-length strings, filled up with blanks or zeros.
+std::string WithoutPadding(std::string_view text) {
+  text = text.substr(0, text.find('\0'));
+  return std::string(Trimmed(text));
+}
+
+// A parameter's record: length of the name (negative when locked), id of the group (negative: this
+// is the group itself), the name, the distance to the next record counted from where the distance
+// stands, and then for a parameter type, number of dimensions, dimensions and data; a description
+// follows. The last record has distance 0, or a name of length 0 stands behind it. Errors: a record
+// that leaves the section, a parameter of a group that never appears, an unknown type.
+class ParameterReader {
+ public:
+  ParameterReader(const std::string& path, const C3dBytes& bytes) : path_(path), bytes_(bytes) {}
+
+  Result<C3dParameters> Read(std::size_t at) {
+    while (true) {
+      if (!bytes_.Has(at, 2)) return Cut(at);
+      const int name_length = std::abs(static_cast<int>(bytes_.Signed(at)));
+      const int group = bytes_.Signed(at + 1);
+      if (name_length == 0) break;
+      const std::size_t distance_at = at + 2 + name_length;
+      if (!bytes_.Has(distance_at, 2)) return Cut(distance_at);
+      const std::string name = WithoutPadding(bytes_.Text(at + 2, name_length));
+      if (group < 0) {
+        group_names_[-group] = name;
+      } else if (MaybeError failed = ReadParameter(name, group, distance_at + 2)) {
+        return *std::move(failed);
+      }
+      const std::size_t distance = bytes_.Word(distance_at);
+      if (distance == 0) break;
+      if (distance < 2) {
+        return C3dError(
+            path_, distance_at,
+            "the next parameter begins inside this one (" + name + "): the file is damaged");
+      }
+      at = distance_at + distance;
+    }
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+      const auto found = group_names_.find(groups_[i]);
+      if (found == group_names_.end()) {
+        return Error{"parameter " + Quoted(parameters_[i].name) + " belongs to group " +
+                         std::to_string(groups_[i]) + ", which the file does not have",
+                     path_};
+      }
+      parameters_[i].group = found->second;
+    }
+    return C3dParameters{std::move(parameters_)};
+  }
+
+ private:
+  Error Cut(std::size_t at) const {
+    return C3dError(path_, at, "the file ends inside its parameters: it is truncated or damaged");
+  }
+
+  MaybeError ReadParameter(const std::string& name, int group, std::size_t at) {
+    if (!bytes_.Has(at, 2)) return Cut(at);
+    C3dParameter parameter;
+    parameter.name = name;
+    const int type = bytes_.Signed(at);
+    if (type != -1 && type != 1 && type != 2 && type != 4) {
+      return C3dError(path_, at,
+                      "parameter " + Quoted(name) + " has the type " + std::to_string(type) +
+                          "; -1, 1, 2 and 4 are known");
+    }
+    parameter.type = static_cast<C3dType>(type);
+    const int num_dimensions = bytes_.Byte(at + 1);
+    at += 2;
+    if (!bytes_.Has(at, num_dimensions)) return Cut(at);
+    std::size_t count = 1;
+    for (int i = 0; i < num_dimensions; ++i) {
+      parameter.dimensions.push_back(bytes_.Byte(at + i));
+      count *= bytes_.Byte(at + i);
+      if (count > bytes_.size()) return Cut(at);
+    }
+    at += num_dimensions;
+    if (!bytes_.Has(at, count * std::abs(type))) return Cut(at);
+    ReadValues(at, count, &parameter);
+    parameters_.push_back(std::move(parameter));
+    groups_.push_back(group);
+    return std::nullopt;
+  }
+
+  void ReadValues(std::size_t at, std::size_t count, C3dParameter* parameter) const {
+    if (parameter->type == C3dType::kText) {
+      const std::size_t length = parameter->dimensions.empty() ? 1 : parameter->dimensions[0];
+      for (std::size_t i = 0; length > 0 && i < count / length; ++i) {
+        parameter->texts.push_back(WithoutPadding(bytes_.Text(at + i * length, length)));
+      }
+      return;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      switch (parameter->type) {
+        case C3dType::kByte:
+          parameter->numbers.push_back(bytes_.Signed(at + i));
+          break;
+        case C3dType::kInteger:
+          parameter->numbers.push_back(bytes_.Integer(at + 2 * i));
+          break;
+        default:
+          parameter->numbers.push_back(bytes_.Real(at + 4 * i));
+      }
+    }
+  }
+
+  const std::string& path_;
+  const C3dBytes& bytes_;
+  std::map<int, std::string> group_names_;
+  std::vector<int> groups_;  // of each parameter; a group may be named after its parameters
+  std::vector<C3dParameter> parameters_;
+};
+
+// The entries of NAME, NAME2, ... up to the first that is not there.
+template <typename Entry>
+std::vector<Entry> Joined(const C3dParameters& parameters, std::string_view group,
+                          const std::string& name, std::vector<Entry> C3dParameter::*entries) {
+  std::vector<Entry> joined;
+  for (int number = 1;; ++number) {
+    const C3dParameter* parameter =
+        parameters.Find(group, number == 1 ? name : name + std::to_string(number));
+    if (parameter == nullptr) return joined;
+    const std::vector<Entry>& part = parameter->*entries;
+    joined.insert(joined.end(), part.begin(), part.end());
+  }
+}
+
+double FromIeee(std::uint32_t bits) {
+  float value;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+double FromVax(std::uint32_t bits) {
+  const int exponent = static_cast<int>(bits >> 23 & 0xff);
+  if (exponent == 0) return 0.0;
+  const double fraction = static_cast<double>((bits & 0x7fffff) | 0x800000);
+  const double size = std::ldexp(fraction, exponent - kVaxBias - kFractionBits);
+  return (bits >> 31) != 0 ? -size : size;
+}
 
 constexpr int kShortLabels = 12345;  // header word 150: event labels have four letters
 constexpr int kHeaderEvents = 18;
 constexpr int kMostPlatforms = 255;
 constexpr char kPlatforms[] = "FORCE_PLATFORM";
+
+// Counts stored in a signed integer although they reach 65535.
+double Unsigned(double value) { return value < 0 ? value + 65536.0 : value; }
 
 Error PlatformError(const C3dFile& file, int index, const std::string& problem) {
   return {"force platform " + std::to_string(index + 1) + " " + problem, file.path};
@@ -62,25 +212,7 @@ Result<C3dPlatform> ReadPlatform(const C3dFile& file, int index, int stride) {
   return platform;
 }
 
-}  // namespace
-
-int C3dFile::samples_per_frame() const {
-  const int frames = num_frames();
-  return analog.empty() || frames == 0 ? 0 : static_cast<int>(analog[0].samples.size()) / frames;
-}
-
-int C3dFile::FindPoint(std::string_view name) const {
-  const auto found = std::find(point_names.begin(), point_names.end(), name);
-  return found == point_names.end() ? -1 : static_cast<int>(found - point_names.begin());
-}
-
-int C3dFile::FindAnalog(std::string_view name) const {
-  for (std::size_t i = 0; i < analog.size(); ++i) {
-    if (analog[i].name == name) return static_cast<int>(i);
-  }
-  return -1;
-}
-
+// The events of the group EVENT, otherwise those of the header at the start of `bytes`.
 std::vector<C3dEvent> ReadC3dEvents(const C3dParameters& parameters, const C3dBytes& bytes) {
   std::vector<C3dEvent> events;
   if (parameters.Find("EVENT", "TIMES") != nullptr) {
@@ -105,6 +237,8 @@ std::vector<C3dEvent> ReadC3dEvents(const C3dParameters& parameters, const C3dBy
   return events;
 }
 
+// Fills file->platforms from its parameters; its analog channels are there already. Errors: an
+// unknown type, too few channels, a channel that does not exist.
 MaybeError ReadC3dPlatforms(C3dFile* file) {
   const int used = file->parameters.Whole(kPlatforms, "USED", 0, 0, kMostPlatforms, 0);
   const C3dParameter* channels = file->parameters.Find(kPlatforms, "CHANNEL");
@@ -120,35 +254,12 @@ MaybeError ReadC3dPlatforms(C3dFile* file) {
   return std::nullopt;
 }
 
-namespace {
-
 // The file's axis that the screen shows as up: "+Z" -> "+z"; empty when it is none.
 std::string UpOfScreen(const std::string& screen_y) {
   if (screen_y.size() != 2 || (screen_y[0] != '+' && screen_y[0] != '-')) return "";
   const char axis = static_cast<char>(screen_y[1] | 0x20);
   return axis >= 'x' && axis <= 'z' ? std::string{screen_y[0], axis} : "";
 }
-
-}  // namespace
-
-Result<PointMotion> ReadC3dPoints(const std::string& path, const PointReadOptions& options) {
-  Result<C3dFile> read = ReadC3d(path, {options.accept_truncated});
-  if (!read.ok()) return read.error();
-  C3dFile& file = read.value();
-  PointMotion motion;
-  motion.path = path;
-  motion.rate_hz = file.point_rate_hz;
-  motion.unit_text = file.point_unit;
-  motion.unit = FromName<LengthUnit>(file.point_unit);
-  motion.up = UpOfScreen(file.screen_y);
-  motion.names = std::move(file.point_names);
-  motion.content_hash = file.content_hash;
-  if (MaybeError failed = ChoosePoints(options, &motion)) return *std::move(failed);
-  for (int index : motion.chosen) motion.positions.push_back(file.points[index]);
-  return motion;
-}
-
-namespace {
 
 constexpr char kGroup[] = "ROTATION";
 constexpr std::size_t kReal = 4, kRealsOfPose = 17, kPoseColumns = 4;
@@ -162,8 +273,7 @@ int Whole(const C3dFile& file, const char* name, int lowest, int highest, int fa
 // "pelvis_4X4" -> "pelvis".
 std::string SegmentName(const std::string& label) {
   constexpr std::string_view kEnding = "_4X4";
-  const bool has = label.size() > kEnding.size() &&
-                   label.compare(label.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
+  const bool has = label.size() > kEnding.size() && EndsWith(label, kEnding);
   return has ? label.substr(0, label.size() - kEnding.size()) : label;
 }
 
@@ -181,18 +291,24 @@ Eigen::Vector3d Origin(const C3dBytes& bytes, std::size_t at) {
   return seen ? Eigen::Vector3d(pose.topRightCorner<3, 1>()) : Eigen::Vector3d(kNaN, kNaN, kNaN);
 }
 
-}  // namespace
-
 bool HasC3dRotations(const C3dFile& file) { return Whole(file, "USED", 0, kMostSegments, 0) > 0; }
 
+// The poses of segments in a C3D file (group ROTATION, as Theia3D and Visual3D write them).
+//
+// From the block ROTATION:DATA_START on stand, for every frame, ROTATION:RATIO times (once, where
+// it is not said) ROTATION:USED poses of 17 floats each: a 4 x 4 matrix by columns, segment to
+// world, whose last column is the segment's origin in POINT:UNITS, and its reliability, negative
+// where the segment was not seen.
+//
+// Adds the origins as points, by the names of ROTATION:LABELS without Theia3D's ending _4X4; of
+// several poses in a frame the first. What is no rotation was not seen. Errors: poses that the file
+// ends before.
 MaybeError AddC3dRotations(const C3dBytes& bytes, C3dFile* file) {
   const std::size_t segments = Whole(*file, "USED", 0, kMostSegments, 0);
   if (segments == 0) return std::nullopt;
-  // A block beyond 32767 stands in a negative integer.
   const double block = file->parameters.Number(kGroup, "DATA_START", 0, 0.0);
   if (block == 0.0) return C3dError(file->path, 0, "ROTATION:DATA_START is missing");
-  const std::size_t begin =
-      (static_cast<std::size_t>(block < 0.0 ? block + 65536.0 : block) - 1) * kC3dBlock;
+  const std::size_t begin = (static_cast<std::size_t>(Unsigned(block)) - 1) * kC3dBlock;
   const std::size_t frame_size =
       kReal * kRealsOfPose * segments * Whole(*file, "RATIO", 1, kMostSegments, 1);
   const std::size_t frames = file->num_frames();
@@ -215,19 +331,14 @@ MaybeError AddC3dRotations(const C3dBytes& bytes, C3dFile* file) {
   return std::nullopt;
 }
 
-namespace {
-
 constexpr int kMagic = 0x50;
 constexpr int kMostWords = 65535;  // of a 16-bit count
 constexpr int kMaxPoints = 32767;
 
-// Counts stored in a signed integer although they reach 65535.
-double Unsigned(double value) { return value < 0 ? value + 65536.0 : value; }
-
 class Reader {
  public:
-  Reader(const std::string& path, std::string_view text, const C3dReadOptions& options)
-      : path_(path), text_(text), options_(options) {
+  Reader(const std::string& path, std::string_view text, bool accept_truncated)
+      : path_(path), text_(text), accept_truncated_(accept_truncated) {
     file_.path = path;
   }
 
@@ -273,7 +384,7 @@ class Reader {
     }
     file_.processor = static_cast<C3dProcessor>(processor);
     bytes_ = C3dBytes(text_, file_.processor);
-    Result<C3dParameters> parameters = ReadC3dParameters(path_, bytes_, begin + 4);
+    Result<C3dParameters> parameters = ParameterReader(path_, bytes_).Read(begin + 4);
     if (!parameters.ok()) return parameters.error();
     file_.parameters = std::move(parameters.value());
     return std::nullopt;
@@ -370,7 +481,7 @@ class Reader {
     const std::size_t available = data_ < bytes_.size() ? (bytes_.size() - data_) / frame_size : 0;
     std::size_t frames = file_.announced_frames;
     if (available < frames) {
-      if (available == 0 || !options_.accept_truncated) {
+      if (available == 0 || !accept_truncated_) {
         return At(bytes_.size(), "the file ends after " + std::to_string(available) + " of " +
                                      std::to_string(frames) +
                                      " frames: it is truncated; export it again");
@@ -460,7 +571,7 @@ class Reader {
 
   const std::string& path_;
   const std::string_view text_;
-  const C3dReadOptions& options_;
+  const bool accept_truncated_;
   C3dBytes bytes_;
   C3dFile file_;
   int num_points_ = 0, num_channels_ = 0, samples_per_frame_ = 0;
@@ -472,10 +583,98 @@ class Reader {
 
 }  // namespace
 
-Result<C3dFile> ReadC3d(const std::string& path, const C3dReadOptions& options) {
+const C3dParameter* C3dParameters::Find(std::string_view group, std::string_view name) const {
+  for (const C3dParameter& parameter : list) {
+    if (EqualsIgnoringCase(parameter.group, group) && EqualsIgnoringCase(parameter.name, name)) {
+      return &parameter;
+    }
+  }
+  return nullptr;
+}
+
+double C3dParameters::Number(std::string_view group, std::string_view name, std::size_t index,
+                             double fallback) const {
+  const C3dParameter* parameter = Find(group, name);
+  if (parameter == nullptr || index >= parameter->numbers.size()) return fallback;
+  return parameter->numbers[index];
+}
+
+int C3dParameters::Whole(std::string_view group, std::string_view name, std::size_t index,
+                         int lowest, int highest, int fallback) const {
+  const double value = Number(group, name, index, fallback);
+  // Written so that NaN fails.
+  return value >= lowest && value <= highest ? static_cast<int>(value) : fallback;
+}
+
+std::vector<double> C3dParameters::Numbers(std::string_view group, const std::string& name) const {
+  return Joined(*this, group, name, &C3dParameter::numbers);
+}
+
+std::vector<std::string> C3dParameters::Texts(std::string_view group,
+                                              const std::string& name) const {
+  return Joined(*this, group, name, &C3dParameter::texts);
+}
+
+std::uint16_t C3dBytes::Word(std::size_t at) const {
+  const std::uint16_t first = Byte(at), second = Byte(at + 1);
+  return static_cast<std::uint16_t>(processor_ == C3dProcessor::kMips ? first << 8 | second
+                                                                      : second << 8 | first);
+}
+
+double C3dBytes::Real(std::size_t at) const {
+  const std::uint32_t first = Word(at), second = Word(at + 2);
+  switch (processor_) {
+    case C3dProcessor::kDec:
+      return FromVax(first << 16 | second);
+    case C3dProcessor::kMips:
+      return FromIeee(first << 16 | second);
+    case C3dProcessor::kIntel:
+      break;
+  }
+  return FromIeee(second << 16 | first);
+}
+
+int C3dFile::samples_per_frame() const {
+  const int frames = num_frames();
+  return analog.empty() || frames == 0 ? 0 : static_cast<int>(analog[0].samples.size()) / frames;
+}
+
+int C3dFile::FindPoint(std::string_view name) const {
+  const auto found = std::find(point_names.begin(), point_names.end(), name);
+  return found == point_names.end() ? -1 : static_cast<int>(found - point_names.begin());
+}
+
+int C3dFile::FindAnalog(std::string_view name) const {
+  for (std::size_t i = 0; i < analog.size(); ++i) {
+    if (analog[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+Result<PointMotion> PointsOfC3d(const C3dFile& file, const PointReadOptions& options) {
+  PointMotion motion;
+  motion.path = file.path;
+  motion.rate_hz = file.point_rate_hz;
+  motion.unit_text = file.point_unit;
+  motion.unit = FromName<LengthUnit>(file.point_unit);
+  motion.up = UpOfScreen(file.screen_y);
+  motion.names = file.point_names;
+  motion.content_hash = file.content_hash;
+  if (MaybeError failed = ChoosePoints(options, &motion)) return *std::move(failed);
+  for (int index : motion.chosen) motion.positions.push_back(file.points[index]);
+  return motion;
+}
+
+Result<PointMotion> ReadC3dPoints(const std::string& path, const PointReadOptions& options) {
+  const Result<C3dFile> file = ReadC3d(path);
+  if (!file.ok()) return file.error();
+  return PointsOfC3d(file.value(), options);
+}
+
+Result<C3dFile> ReadC3d(const std::string& path, bool accept_truncated) {
   const Result<std::string> text = ReadWholeFile(path);
   if (!text.ok()) return text.error();
-  Result<C3dFile> file = Reader(path, text.value(), options).Read();
+  Result<C3dFile> file = Reader(path, text.value(), accept_truncated).Read();
   if (!file.ok()) return file.error();
   ContentHash hash;
   hash.Add(text.value());

@@ -14,6 +14,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,8 +26,6 @@
 
 namespace pushid {
 
-class C3dBytes;  // c3d_parameters.h
-
 // The numbers are those in the file.
 enum class C3dProcessor { kIntel = 84, kDec = 85, kMips = 86 };
 constexpr EnumNames<C3dProcessor, 3> Names(C3dProcessor) {
@@ -33,6 +33,39 @@ constexpr EnumNames<C3dProcessor, 3> Names(C3dProcessor) {
            {"DEC", C3dProcessor::kDec},
            {"MIPS", C3dProcessor::kMips}}};
 }
+
+// Numbers in the bytes of a C3D file, as the three processors store them.
+//
+// Intel: little-endian integers and IEEE floats. MIPS: the same, big-endian. DEC: little-endian
+// integers, VAX F floats: two little-endian words, the upper one first, value
+// (0x800000 | fraction) 2^(exponent - 152), zero when the exponent is zero.
+
+inline constexpr int kVaxBias = 128, kFractionBits = 24;
+inline constexpr std::size_t kC3dBlock = 512;  // bytes; the sections of a file begin with one
+
+class C3dBytes {
+ public:
+  C3dBytes() = default;
+  C3dBytes(std::string_view bytes, C3dProcessor processor) : bytes_(bytes), processor_(processor) {}
+
+  std::size_t size() const { return bytes_.size(); }
+  bool Has(std::size_t at, std::size_t count) const {
+    return at <= bytes_.size() && count <= bytes_.size() - at;
+  }
+  // The accessors below need Has().
+  std::uint8_t Byte(std::size_t at) const { return static_cast<std::uint8_t>(bytes_[at]); }
+  std::int8_t Signed(std::size_t at) const { return static_cast<std::int8_t>(bytes_[at]); }
+  std::uint16_t Word(std::size_t at) const;
+  std::int16_t Integer(std::size_t at) const { return static_cast<std::int16_t>(Word(at)); }
+  double Real(std::size_t at) const;
+  std::string_view Text(std::size_t at, std::size_t count) const {
+    return bytes_.substr(at, count);
+  }
+
+ private:
+  std::string_view bytes_;
+  C3dProcessor processor_ = C3dProcessor::kIntel;
+};
 
 enum class C3dType { kText = -1, kByte = 1, kInteger = 2, kReal = 4 };
 
@@ -67,7 +100,7 @@ struct C3dEvent {
   std::string context;  // Left, Right, General; may be empty
 };
 
-// The place of a force platform and the channels it fills (evaluated by force_platform.h).
+// The place of a force platform and the channels it fills (evaluated by force_sensors.h).
 struct C3dPlatform {
   int type = 2;               // 1 to 4
   std::vector<int> channels;  // indices into the analog channels, from 0
@@ -109,32 +142,12 @@ struct C3dFile {
   int FindAnalog(std::string_view name) const;  // index, or -1
 };
 
-struct C3dReadOptions {
-  // A file that ends before its last announced frame: take the whole frames that are there instead
-  // of refusing it. For looking at what a file holds.
-  bool accept_truncated = false;
-};
+// accept_truncated: of a file that ends before its last announced frame the whole frames that are
+// there are taken, instead of refusing it. For looking at what a file holds.
+Result<C3dFile> ReadC3d(const std::string& path, bool accept_truncated = false);
 
-Result<C3dFile> ReadC3d(const std::string& path, const C3dReadOptions& options = {});
-
-// The points of a C3D file.
-
-// Errors are those of ReadC3d (c3d.h).
+// The points of a C3D file. Errors are those of ReadC3d, and of the choice.
+Result<PointMotion> PointsOfC3d(const C3dFile& file, const PointReadOptions& options = {});
 Result<PointMotion> ReadC3dPoints(const std::string& path, const PointReadOptions& options = {});
-
-// The poses of segments in a C3D file (group ROTATION, as Theia3D and Visual3D write
-// them).
-//
-// From the block ROTATION:DATA_START on stand, for every frame, ROTATION:RATIO times (once, where
-// it is not said) ROTATION:USED poses of 17 floats each: a 4 x 4 matrix by columns, segment to
-// world, whose last column is the segment's origin in POINT:UNITS, and its reliability, negative
-// where the segment was not seen.
-
-bool HasC3dRotations(const C3dFile& file);
-
-// Adds the origins as points, by the names of ROTATION:LABELS without Theia3D's ending _4X4; of
-// several poses in a frame the first. What is no rotation was not seen. Errors: poses that the file
-// ends before.
-MaybeError AddC3dRotations(const C3dBytes& bytes, C3dFile* file);
 
 }  // namespace pushid

@@ -1,11 +1,9 @@
 // datasets: the formats of motion files.
 #include "datasets/formats/motion_formats.h"
 
-#include "datasets/files/input_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh.h"
-#include "datasets/formats/bvh_header.h"
 #include "datasets/formats/units.h"
 
 namespace pushid {
@@ -56,17 +54,58 @@ Result<PointMotion> ReadPointMotion(const std::string& path, MotionFormat format
 Result<double> ReadFrameRate(const std::string& path, MotionFormat format,
                              const PointReadOptions& options) {
   if (HasSkeleton(format)) {
-    LineReader reader;
-    if (MaybeError failed = reader.Open(path)) return *std::move(failed);
-    const Result<BvhHeader> header = ReadBvhHeader(&reader);
-    if (!header.ok()) return header.error();
-    return WholeFrameRate(1.0 / header.value().frame_time_s);
+    const Result<double> frame_time = ReadBvhFrameTime(path);
+    if (!frame_time.ok()) return frame_time;
+    return WholeFrameRate(1.0 / frame_time.value());
   }
   PointReadOptions none = options;
   none.choose = [](const std::vector<std::string>&) { return std::vector<int>{}; };
   const Result<PointMotion> motion = ReadPointMotion(path, format, none);
   if (!motion.ok()) return motion.error();
   return WholeFrameRate(motion.value().rate_hz);
+}
+
+Result<TimedColumns> ReadTimedColumns(
+    const std::string& path,
+    const std::function<Result<std::vector<int>>(const std::vector<std::string>&)>& choose) {
+  const MotionFormat format = MotionFormatOfFile(path).value_or(MotionFormat::kCsv);
+  std::vector<int> columns;
+  int time = -1;
+  TableReadOptions options;
+  options.keep_lines = true;
+  options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
+    time = FindTimeColumn(names, "");
+    if (time < 0) return Error{"there is no column called time", path};
+    const Result<std::vector<int>> chosen = choose(names);
+    if (!chosen.ok()) return chosen.error();
+    columns = chosen.value();
+    std::vector<int> wanted;
+    for (int column : columns) {
+      if (column >= 0) wanted.push_back(column);
+    }
+    wanted.push_back(time);
+    return wanted;
+  };
+  const Result<NumericTable> table =
+      ReadNumericTable(path, RowOf(format).table.value_or(TableFormat::kCsv), options);
+  if (!table.ok()) return table.error();
+  TimedColumns read;
+  read.file = path;
+  read.lines = table.value().lines;
+  if (table.value().num_rows() < 3) {
+    return Error{
+        "it has " + std::to_string(table.value().num_rows()) + " rows; three or more are needed",
+        path};
+  }
+  const Result<double> step = EvenTimeStep(table.value(), time);
+  if (!step.ok()) return step.error();
+  read.rate_hz = 1.0 / step.value();
+  read.first_s = table.value().data.back()[0];
+  size_t next = 0;
+  for (int column : columns) {
+    read.values.push_back(column >= 0 ? table.value().data[next++] : std::vector<double>());
+  }
+  return read;
 }
 
 }  // namespace pushid

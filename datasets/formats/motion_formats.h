@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -78,5 +79,23 @@ Result<PointMotion> ReadPointMotion(const std::string& path, MotionFormat format
 // of a BVH file is not read.
 Result<double> ReadFrameRate(const std::string& path, MotionFormat format,
                              const PointReadOptions& options = {});
+
+// Columns of numbers with their times, from CSV and OpenSim storage files.
+
+struct TimedColumns {
+  std::string file;
+  double first_s = 0.0;                     // of the first row, on the file's clock
+  double rate_hz = 0.0;                     // evenly spaced
+  std::vector<std::vector<double>> values;  // [as chosen][row]; NaN where a cell is empty
+  std::vector<int> lines;                   // of each row
+
+  int num_rows() const { return static_cast<int>(lines.size()); }
+};
+
+// choose: indices of the columns wanted, from all names; negative ones come out empty. Errors
+// besides the choice's and those of numeric_table.h: no column of times, uneven ones.
+Result<TimedColumns> ReadTimedColumns(
+    const std::string& path,
+    const std::function<Result<std::vector<int>>(const std::vector<std::string>&)>& choose);
 
 }  // namespace pushid

@@ -49,7 +49,6 @@ struct PointReadOptions {
   std::string time_column;
   // Tables: points whose columns do not follow a pattern such as hip_x, hip_y, hip_z (PointsOf).
   std::vector<PointColumns> columns;
-  bool accept_truncated = false;  // of C3D, see C3dReadOptions
 };
 
 // The points that the options choose of motion->names; without a choice all.
@@ -98,5 +97,9 @@ Result<PointMotion> ReadStoragePoints(const std::string& path,
 // than its numbers, a marker with one or two of its three, a last row that is cut, wrong frame
 // count.
 Result<PointMotion> ReadTrc(const std::string& path, const PointReadOptions& options = {});
+
+// Writes all points of the motion (positions in motion.unit, millimetres when unset), atomically;
+// points not seen as empty cells.
+MaybeError WriteTrc(const std::string& path, const PointMotion& motion);
 
 }  // namespace pushid

@@ -56,14 +56,6 @@ std::string LengthText(double metres_per_unit) {
   return Rounded(metres_per_unit) + " m each";
 }
 
-double ConvertLength(double value, LengthUnit from, LengthUnit to) {
-  if (from == to) return value;
-  // The ratio or its inverse is a whole number, as a rule: that one is exact.
-  const double from_per_metre = RowOf(from).per_metre, to_per_metre = RowOf(to).per_metre;
-  return to_per_metre >= from_per_metre ? value * (to_per_metre / from_per_metre)
-                                        : value / (from_per_metre / to_per_metre);
-}
-
 Result<Eigen::Matrix3d> AxesRotation(const std::string& up, const std::string& forward) {
   const Eigen::Vector3d z = AxisVector(up);
   const Eigen::Vector3d x = AxisVector(forward);

@@ -56,9 +56,6 @@ std::string LengthScaleProblem(double metres);
 // "mm", or "0.0564 m each" where it is no unit.
 std::string LengthText(double metres_per_unit);
 
-// `value` given in `from`, expressed in `to`; exact (no rounding at all) when the two are the same.
-double ConvertLength(double value, LengthUnit from, LengthUnit to);
-
 // Axes of a file turned to the project's: x forward, y left, z up.
 
 // The rotation that takes a file's coordinates to the project's, from the file's axes that point up

@@ -260,6 +260,7 @@ constexpr double kStillOn = 0.5, kSlowStart = 0.25;
 // least, as its slopes beside the flat part go on.
 constexpr double kSameValue = 1e-6, kCutOff = 0.1;
 
+// Of the horizontal force, N.
 double Length(const Vector4<double>& row) { return row.head<2>().norm(); }
 
 double Peak(const ScenePush& push) {
@@ -288,8 +289,6 @@ constexpr double kSlowestRate = 10.0, kFastestRate = 2000.0;  // 1/s
 constexpr double kFacesElsewhere = 75.0 * kDegree;            // one foot may be ahead
 constexpr double kApart = 0.05;                               // m; closer ankles say nothing
 constexpr std::size_t kNamedCases = 4;                        // cases of a sentence
-
-double HorizontalForce(const Vector4<double>& row) { return row.head<2>().norm(); }
 
 bool SameMotion(const PendulumRecording& a, const PendulumRecording& b) {
   if (a.id == b.id) return false;
@@ -364,16 +363,14 @@ class Judge {
   }
 
   void LookAtRows(const ScenePush& push) {
-    double peak = 0.0;
-    for (const Vector4<double>& row : push.force) peak = std::max(peak, HorizontalForce(row));
+    const double peak = Peak(push);
     const std::string who = Who(push.person);
     if (peak > kStrongPush) Add(FindingKind::kStrong, who, peak);
-    if (FirstRowStandsOut(push.force))
-      Add(FindingKind::kFirstRow, who, HorizontalForce(push.force[0]));
+    if (FirstRowStandsOut(push.force)) Add(FindingKind::kFirstRow, who, Length(push.force[0]));
     const double rest = RestingForce(push, r_.scene.dt);
     if (rest > 0.0) Add(FindingKind::kZero, who, rest);
     if (rest == 0.0 && HasNoEnd(push, r_.num_frames())) {
-      Add(FindingKind::kNoEnd, who, HorizontalForce(push.force.back()));
+      Add(FindingKind::kNoEnd, who, Length(push.force.back()));
     }
     if (IsClipped(push)) Add(FindingKind::kClipped, who, peak);
   }
@@ -492,8 +489,8 @@ const std::vector<FindingRow>& Names(FindingKind) {
 bool FirstRowStandsOut(const std::vector<Vector4<double>>& force) {
   if (force.size() < 3) return false;
   double others = 0.0;
-  for (size_t t = 1; t < force.size(); ++t) others = std::max(others, HorizontalForce(force[t]));
-  return HorizontalForce(force[0]) > kStandsOut * others;
+  for (size_t t = 1; t < force.size(); ++t) others = std::max(others, Length(force[t]));
+  return Length(force[0]) > kStandsOut * others;
 }
 
 std::vector<Finding> FindingsOf(const PendulumRecording& recording) {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
-#include "datasets/loading/warning.h"
 #include "datasets/manifest/recording.h"
 #include "models/enum_names.h"
 

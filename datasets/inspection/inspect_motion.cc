@@ -7,7 +7,7 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
-#include "datasets/loading/motion_preparation.h"
+#include "datasets/loading/motion_tracks.h"
 
 namespace pushid {
 namespace {

@@ -7,8 +7,8 @@
 #include "datasets/files/error.h"
 #include "datasets/formats/point_motion.h"
 #include "datasets/inspection/inspection.h"
-#include "datasets/manifest/body_roles.h"
-#include "datasets/manifest/joint_choice.h"
+#include "datasets/manifest/joint_mapping.h"
+#include "datasets/manifest/recording.h"
 
 namespace pushid {
 

@@ -19,13 +19,11 @@
 #include "datasets/formats/trajectories.h"
 #include "datasets/inspection/findings.h"
 #include "datasets/inspection/inspect_motion.h"
-#include "datasets/loading/ground_record.h"
+#include "datasets/loading/laboratory_record.h"
 #include "datasets/loading/load_recordings.h"
-#include "datasets/loading/plate_record.h"
-#include "datasets/manifest/joint_choice.h"
+#include "datasets/manifest/joint_mapping.h"
 #include "datasets/manifest/manifest.h"
-#include "datasets/sensors/force_platform.h"
-#include "datasets/sensors/sensor_choice.h"
+#include "datasets/sensors/force_sensors.h"
 #include "models/ipm.h"
 
 namespace pushid {
@@ -287,7 +285,7 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
   std::string body;
   std::vector<std::string> names;
   BvhPositionOptions options;
-  options.length_unit = LengthUnit::kMetre;  // as it stands: the unit is what is to be found
+  options.metres_per_unit = 1.0;  // as it stands: the unit is what is to be found
   options.choose_joints = [&](const BvhSkeleton& skeleton) -> Result<std::vector<int>> {
     names = skeleton.Names();
     const Result<PendulumJoints> joints =
@@ -327,7 +325,7 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
 }
 
 MaybeError LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
-  const Result<C3dFile> read = ReadC3d(found->path, {true});
+  const Result<C3dFile> read = ReadC3d(found->path, true);
   if (!read.ok()) return read.error();
   const C3dFile& file = read.value();
   found->format += ", " + NameOf(file.processor) + (file.floating ? ", floats" : ", integers");
@@ -336,13 +334,7 @@ MaybeError LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
                 std::to_string(file.announced_frames) +
                 " frames: it is truncated and cannot be fitted");
   }
-  if (!file.points.empty()) {
-    PointReadOptions options;
-    options.accept_truncated = true;
-    const Result<PointMotion> motion = ReadC3dPoints(found->path, options);
-    if (!motion.ok()) return motion.error();
-    LookAtPoints(motion.value(), mapping, found);
-  }
+  if (!file.points.empty()) LookAtPoints(PointsOfC3d(file).value(), mapping, found);
   if (!file.analog.empty()) LookAtAnalog(file, found);
   LookAtPlatforms(file, found);
   for (const C3dEvent& event : file.events) {

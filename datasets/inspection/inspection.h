@@ -13,7 +13,7 @@
 
 #include "datasets/files/error.h"
 #include "datasets/loading/foot_steps.h"
-#include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/joint_mapping.h"
 
 namespace pushid {
 

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "datasets/files/input_file.h"
-#include "datasets/files/name_pattern.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/force_csv.h"
@@ -15,7 +14,7 @@
 #include "datasets/formats/trajectories.h"
 #include "datasets/formats/units.h"
 #include "datasets/loading/load_recordings.h"
-#include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/joint_mapping.h"
 
 namespace pushid {
 namespace {
@@ -25,6 +24,54 @@ namespace fs = std::filesystem;
 // Names in a pattern that mean something; others tell recordings apart.
 const std::vector<std::string> kUnderstood = {"setting",   "subject",        "magnitude",
                                               "condition", kOldConditionKey, "person"};
+
+struct FoundFile {
+  std::string path;  // relative to the folder
+  NameValues values;
+};
+
+// "7" before "10", and both before "a".
+bool PersonBefore(const FoundFile& a, const FoundFile& b) {
+  std::int64_t x = 0, y = 0;
+  const std::string &p = a.values.at("person"), &q = b.values.at("person");
+  const bool numbers = ParseInteger(p, &x) && ParseInteger(q, &y);
+  return numbers && x != y ? x < y : p < q;
+}
+
+// The id of the recording that a file belongs to: its values without the person's.
+std::string IdOf(const NamePattern& pattern, const NameValues& values) {
+  const bool several = pattern.Has("person");
+  std::string id;
+  for (const std::string& name : pattern.names()) {
+    if (name == "person" || (several && name == "subject")) continue;
+    id += (id.empty() ? "" : "_") + values.at(name);
+  }
+  return id.empty() ? "recording" : id;
+}
+
+// Files of one recording differ in their person, and besides in the subject alone.
+// people: whether the pattern names persons; otherwise a recording is one file.
+MaybeError CheckTogether(const std::string& id, const std::vector<FoundFile>& files, bool people,
+                         const std::string& folder) {
+  const auto rest = [](NameValues values) {
+    values.erase("person");
+    values.erase("subject");
+    return values;
+  };
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    const FoundFile &a = files[i - 1], &b = files[i];
+    const bool same = !people || a.values.at("person") == b.values.at("person");
+    if (!same && rest(a.values) == rest(b.values)) continue;
+    return Error{a.path + " and " + b.path + " are both " +
+                     (people && same ? "person " + Quoted(a.values.at("person")) + " of " : "") +
+                     "recording " + Quoted(id) +
+                     (rest(a.values) == rest(b.values)
+                          ? "; replace the * that differs by a name in the pattern"
+                          : "; give one of them another name"),
+                 folder};
+  }
+  return std::nullopt;
+}
 
 class Maker {
  public:
@@ -183,11 +230,6 @@ class Maker {
           Value(file.values, "subject", Value(file.values, "person", "person"));
       recording.subjects.push_back(SubjectOf(subject));
       recording.motion.push_back(FromManifest(file.path));
-    }
-    recording.pushed_person = options_.pushed_person;
-    if (recording.pushed_person >= static_cast<int>(files->size())) {
-      return Error{"recording " + Quoted(id) + " has " + std::to_string(files->size()) +
-                   " people, so there is no person " + std::to_string(recording.pushed_person)};
     }
     SetPush(values, &recording);
     recording.mapping = options_.mapping.empty() ? "" : BesideManifest(options_.mapping);

@@ -31,7 +31,6 @@ struct ManifestOptions {
   std::map<std::string, ManifestSubject> people;  // by id: masses, and facts under other keys
   double mass_kg = 0.0;                           // of everybody else; 0: not known, an Error
   double fps = 0.0;                               // 0: as each file says, whole where it nearly is
-  int pushed_person = 0;
   // The setting of recordings whose pattern does not say.
   std::string setting = "single";
   std::string magnitude = "unknown";

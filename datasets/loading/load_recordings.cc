@@ -4,16 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <utility>
 
 #include "datasets/files/number_text.h"
+#include "datasets/formats/bvh.h"
 #include "datasets/formats/force_csv.h"
 #include "datasets/formats/trajectories.h"
-#include "datasets/loading/ground_record.h"
-#include "datasets/loading/plate_record.h"
-#include "datasets/loading/recording_from_tracks.h"
-#include "datasets/manifest/column_mapping.h"
-#include "datasets/manifest/joint_choice.h"
+#include "datasets/loading/laboratory_record.h"
+#include "datasets/loading/motion_tracks.h"
+#include "datasets/manifest/joint_mapping.h"
 
 namespace pushid {
 namespace {
@@ -111,9 +111,49 @@ MaybeError LoadLaboratory(const ManifestRecording& entry, const GroundReading& r
 
 using Track = std::vector<Eigen::Vector3d>;
 
+// One person of a recording from the file that holds their motion.
+struct LoadedPerson {
+  RecordedPerson person;
+  double fps = 0.0;              // the manifest's, otherwise the file's
+  double metres_per_unit = 1.0;  // of the file
+  std::string file_hash;         // of the file (and of the mapping, where there is one)
+};
+
+// The joints or points of a motion file that a person is read from, whatever its format.
+struct FileMotion {
+  std::vector<std::vector<Eigen::Vector3d>> tracks;  // of what is read, file's axes, metres
+  PendulumJoints places;                             // indices into tracks
+  std::vector<std::string> names;
+  std::vector<int> parents;   // of BVH joints; otherwise -1 each
+  double frame_time_s = 0.0;  // 0: neither file nor mapping says it
+  double first_time_s = 0.0;  // by the file's clock
+  double metres_per_unit = MetresPer(LengthUnit::kMillimetre);
+  // Set with all joints: who plays which role, and a BVH's hierarchy at the first frame.
+  BodyRoles roles;
+  std::optional<FileSkeleton> skeleton;
+  std::string content_hash;
+};
+
+// Turns indices into the file's joints to indices into the list of those that are read.
+std::vector<int> Among(const std::vector<int>& wanted, std::vector<int>* read) {
+  std::vector<int> places;
+  for (int joint : wanted) {
+    const auto found = std::find(read->begin(), read->end(), joint);
+    places.push_back(static_cast<int>(found - read->begin()));
+    if (found == read->end()) read->push_back(joint);
+  }
+  return places;
+}
+
+bool NeverSeen(const Track& track) {
+  return std::none_of(track.begin(), track.end(), [](const auto& p) { return p.allFinite(); });
+}
+
 // fps and a BVH's rounded frame time agree within this: 0.016667 s against 60 Hz is 0.002 %.
 constexpr double kFrameTimeTolerance = 1e-3;
 
+// Reads the file of subject `index`, cuts it to the manifest's frames, closes gaps, turns it to the
+// project's units and axes and checks that it can be a person.
 class PersonLoader {
  public:
   PersonLoader(const Manifest& manifest, const ManifestRecording& entry, std::size_t index,
@@ -132,40 +172,140 @@ class PersonLoader {
       if (!hash.ok()) return hash.error();
       mapping_hash_ = hash.value();
     }
-    const JointMapping joints =
-        Overlaid(entry_.subjects[index_].joints, Overlaid(entry_.joints, mapping_.joints));
+    joints_ = Overlaid(entry_.subjects[index_].joints, Overlaid(entry_.joints, mapping_.joints));
     const bool crowd = HoldsCrowd(entry_.motion_format) ||
                        (entry_.motion_format == MotionFormat::kCsv && IsCrowdCsv(path_));
-    if (crowd && !joints.hip) {
+    if (crowd && !joints_.hip) {
       return Error{kCrowdIsNoRecording, path_};
     }
-    Result<FileMotion> read = ReadFileMotion(
-        {path_, entry_.motion_format, MetresGiven(), joints, mapping_, options_.keep_all_joints,
-         entry_.first_frame, [this](const std::string& warning) { Warn(warning); }});
-    if (!read.ok()) return read.error();
-    FileMotion& motion = read.value();
-    if (MaybeError failed = SetRate(motion.frame_time_s)) return *std::move(failed);
+    if (MaybeError failed = HasSkeleton(entry_.motion_format) ? ReadSkeleton() : ReadPoints()) {
+      return *std::move(failed);
+    }
+    if (MaybeError failed = SetRate(motion_.frame_time_s)) return *std::move(failed);
     LoadedPerson loaded;
     loaded.fps = fps_;
-    loaded.metres_per_unit = motion.metres_per_unit;
-    loaded.file_hash = mapping_hash_ + motion.content_hash;
+    loaded.metres_per_unit = motion_.metres_per_unit;
+    loaded.file_hash = mapping_hash_ + motion_.content_hash;
     RecordedPerson& person = loaded.person;
     person.subject_id = entry_.subjects[index_].id;
     person.mass_kg = entry_.subjects[index_].mass_kg;
     person.known = entry_.subjects[index_].known;
     person.file = path_;
     person.skipped_s =
-        entry_.first_frame * (motion.frame_time_s > 0.0 ? motion.frame_time_s : 1.0 / fps_);
-    person.file_clock_s = motion.first_time_s + person.skipped_s;
-    if (MaybeError failed = Cut(&motion)) return *std::move(failed);
-    if (MaybeError failed = CloseGaps(&motion, &person)) return *std::move(failed);
-    if (MaybeError failed = Turn(&motion, &person)) return *std::move(failed);
-    Take(motion, &person);
-    if (MaybeError failed = CheckMotion(person, motion.metres_per_unit)) return *std::move(failed);
+        entry_.first_frame * (motion_.frame_time_s > 0.0 ? motion_.frame_time_s : 1.0 / fps_);
+    person.file_clock_s = motion_.first_time_s + person.skipped_s;
+    if (MaybeError failed = Cut()) return *std::move(failed);
+    if (MaybeError failed = CloseGaps(&person)) return *std::move(failed);
+    if (MaybeError failed = Turn(&person)) return *std::move(failed);
+    Take(&person);
+    if (MaybeError failed = CheckMotion(person, motion_.metres_per_unit)) return *std::move(failed);
     return loaded;
   }
 
  private:
+  // Which of the file's `all` joints are read; where the pendulum's stand among those.
+  std::vector<int> Wanted(const PendulumJoints& joints, std::size_t all) {
+    std::vector<int> read(options_.keep_all_joints ? all : 0);
+    std::iota(read.begin(), read.end(), 0);
+    for (const PendulumTrack& row : kPendulumTracks) {
+      motion_.places.*row.joints = Among(joints.*row.joints, &read);
+    }
+    return read;
+  }
+
+  // Chooses what is read of the file's joints, and sets their roles where all are kept; skeleton:
+  // null for points.
+  Result<std::vector<int>> Choose(const std::vector<std::string>& names,
+                                  const BvhSkeleton* skeleton) {
+    const Result<PendulumJoints> joints = skeleton != nullptr
+                                              ? ChoosePendulumJoints(path_, *skeleton, joints_)
+                                              : ChoosePendulumPoints(path_, names, joints_);
+    if (!joints.ok()) return joints.error();
+    if (options_.keep_all_joints) {
+      Result<BodyRoles> roles = ChooseRoles(path_, names, skeleton, joints.value(), joints_);
+      if (!roles.ok()) return roles.error();
+      motion_.roles = std::move(roles.value());
+    }
+    return Wanted(joints.value(), names.size());
+  }
+
+  MaybeError ReadSkeleton() {
+    motion_.metres_per_unit = MetresGiven().value_or(motion_.metres_per_unit);
+    BvhPositionOptions options;
+    options.metres_per_unit = motion_.metres_per_unit;
+    if (options_.keep_all_joints) options.kept_frame = entry_.first_frame;
+    options.choose_joints = [this](const BvhSkeleton& skeleton) {
+      return Choose(skeleton.Names(), &skeleton);
+    };
+    Result<BvhPositions> read = ReadBvhPositions(path_, options);
+    if (!read.ok()) return read.error();
+    BvhPositions& bvh = read.value();
+    motion_.tracks = std::move(bvh.positions);
+    motion_.frame_time_s = bvh.frame_time_s;
+    motion_.content_hash = bvh.content_hash;
+    for (int joint : bvh.joints) {
+      motion_.names.push_back(bvh.skeleton.joints[joint].name);
+      motion_.parents.push_back(bvh.skeleton.joints[joint].parent);
+    }
+    if (options_.keep_all_joints) {
+      motion_.skeleton = FileSkeleton{std::move(bvh.skeleton), std::move(bvh.kept_values),
+                                      motion_.metres_per_unit};
+    }
+    return std::nullopt;
+  }
+
+  MaybeError ReadPoints() {
+    PointReadOptions options;
+    options.columns = mapping_.columns;
+    options.time_column = mapping_.time_column;
+    options.choose = [this](const std::vector<std::string>& names) {
+      return Choose(names, nullptr);
+    };
+    Result<PointMotion> read = ReadPointMotion(path_, entry_.motion_format, options);
+    if (!read.ok()) return read.error();
+    PointMotion& points = read.value();
+    if (MaybeError failed = SetUnit(points)) return failed;
+    motion_.tracks = std::move(points.positions);
+    for (Track& track : motion_.tracks) {
+      for (Eigen::Vector3d& position : track) position *= motion_.metres_per_unit;
+    }
+    PutBaseAtOrigin();
+    const double rate = mapping_.frame_rate > 0.0 ? mapping_.frame_rate : points.rate_hz;
+    motion_.frame_time_s = rate > 0.0 ? 1.0 / rate : 0.0;
+    motion_.first_time_s = points.first_time_s;
+    motion_.content_hash = points.content_hash;
+    for (int point : points.chosen) motion_.names.push_back(points.names[point]);
+    motion_.parents.assign(motion_.names.size(), -1);
+    return std::nullopt;
+  }
+
+  // An Error where a file gives a unit that is not known and nothing else says one.
+  MaybeError SetUnit(const PointMotion& points) {
+    const std::optional<double> given = MetresGiven();
+    const double files = points.unit ? MetresPer(*points.unit) : motion_.metres_per_unit;
+    motion_.metres_per_unit = given.value_or(files);
+    if (!points.unit && !Trimmed(points.unit_text).empty() && !given) {
+      return Error{"gives lengths in " + Quoted(points.unit_text) +
+                       ", an unknown unit; give length_unit (" + AnyName<LengthUnit>() +
+                       ") or length_scale (m) in the manifest",
+                   path_};
+    }
+    if (points.unit && files != motion_.metres_per_unit) {
+      Warn("gives lengths in " + NameOf(*points.unit) + "; they are read as " +
+           LengthText(motion_.metres_per_unit));
+    }
+    return std::nullopt;
+  }
+
+  // A base of support at the origin of its log: elsewhere 0, 0, 0 is a point that was not seen.
+  void PutBaseAtOrigin() {
+    if (joints_.others.count(kBaseRole) == 0) return;
+    for (int base : motion_.places.left_ankle) {
+      Track& track = motion_.tracks[base];
+      if (NeverSeen(track)) track.assign(track.size(), Eigen::Vector3d::Zero());
+    }
+  }
+
   // Metres per unit as a reader is told who does not have to believe the file; the first one
   // counts.
   std::optional<double> MetresGiven() const {
@@ -217,8 +357,8 @@ class PersonLoader {
          " frames per second; the manifest's value is used");
   }
 
-  MaybeError Cut(FileMotion* motion) const {
-    const int frames = static_cast<int>(motion->tracks[0].size());
+  MaybeError Cut() {
+    const int frames = static_cast<int>(motion_.tracks[0].size());
     if (entry_.frames && *entry_.frames != frames) {
       return Error{"wrong frame count: the file has " + std::to_string(frames) +
                        " frames, the manifest gives " + std::to_string(*entry_.frames),
@@ -231,31 +371,31 @@ class PersonLoader {
                        std::to_string(entry_.first_frame) + " and end_frame " + std::to_string(end),
                    path_};
     }
-    for (Track& track : motion->tracks) {
+    for (Track& track : motion_.tracks) {
       track = Track(track.begin() + entry_.first_frame, track.begin() + end);
     }
     return std::nullopt;
   }
 
   // A frame loses weight only by gaps of hip and ankles.
-  MaybeError CloseGaps(FileMotion* motion, RecordedPerson* person) const {
-    const std::size_t frames = motion->tracks[0].size();
+  MaybeError CloseGaps(RecordedPerson* person) {
+    const std::size_t frames = motion_.tracks[0].size();
     const int max_gap = static_cast<int>(std::floor(options_.preparation.max_gap_s * fps_ + 1e-9));
     std::vector<double> unused(frames, 1.0);
     std::vector<Track*> counting;
-    for (std::size_t i = 0; i < motion->tracks.size(); ++i) {
-      Track& track = motion->tracks[i];
-      if (IsPlace(motion->places, static_cast<int>(i))) {
+    for (std::size_t i = 0; i < motion_.tracks.size(); ++i) {
+      Track& track = motion_.tracks[i];
+      if (IsPlace(motion_.places, static_cast<int>(i))) {
         counting.push_back(&track);
-        if (std::none_of(track.begin(), track.end(), [](const auto& p) { return p.allFinite(); })) {
-          return Error{motion->names[i] + " is never seen; choose another by \"joints\"", path_};
+        if (NeverSeen(track)) {
+          return Error{motion_.names[i] + " is never seen; choose another by \"joints\"", path_};
         }
         continue;
       }
       const GapCount count = FillGaps(max_gap, &track, &unused);
-      if (count.excluded_frames > 0) Forget(static_cast<int>(i), &motion->places);
+      if (count.excluded_frames > 0) Forget(static_cast<int>(i), &motion_.places);
       if (count.excluded_frames == static_cast<int>(frames)) {
-        ForgetRoles(static_cast<int>(i), &motion->roles);
+        ForgetRoles(static_cast<int>(i), &motion_.roles);
       }
     }
     FilledTracks filled = FillTracks(max_gap, counting);
@@ -304,14 +444,14 @@ class PersonLoader {
     return std::find(joints.begin(), joints.end(), track) != joints.end();
   }
 
-  MaybeError Turn(FileMotion* motion, RecordedPerson* person) const {
+  MaybeError Turn(RecordedPerson* person) {
     const bool own =
         mapping_.up.empty() || entry_.json->contains("up") || entry_.json->contains("forward");
     person->file_up = own ? entry_.up : mapping_.up;
     person->file_forward = own ? entry_.forward : mapping_.forward;
     const Result<Eigen::Matrix3d> rotation = AxesRotation(person->file_up, person->file_forward);
     if (!rotation.ok()) return rotation.error();
-    for (Track& track : motion->tracks) {
+    for (Track& track : motion_.tracks) {
       for (Eigen::Vector3d& position : track) position = rotation.value() * position;
     }
     return std::nullopt;
@@ -327,29 +467,29 @@ class PersonLoader {
     return mean;
   }
 
-  void Take(FileMotion& motion, RecordedPerson* person) const {
+  void Take(RecordedPerson* person) {
     for (const PendulumTrack& row : kPendulumTracks) {
-      person->*row.track = Mean(motion.tracks, motion.places.*row.joints);
+      person->*row.track = Mean(motion_.tracks, motion_.places.*row.joints);
     }
     if (!options_.keep_all_joints) return;
-    person->joint_names = motion.names;
-    person->joint_parents = motion.parents;
-    person->roles = motion.roles;
-    person->skeleton = std::move(motion.skeleton);
+    person->joint_names = motion_.names;
+    person->joint_parents = motion_.parents;
+    person->roles = motion_.roles;
+    person->skeleton = std::move(motion_.skeleton);
     if (person->skeleton) {
       person->skeleton->world_from_file =
           AxesRotation(person->file_up, person->file_forward).value();
     }
-    const std::vector<int> filled = FilledRoles(motion.roles);
-    if (!filled.empty() && UnfilledRoles(motion.roles).empty()) {
+    const std::vector<int> filled = FilledRoles(motion_.roles);
+    if (!filled.empty() && UnfilledRoles(motion_.roles).empty()) {
       Warn(
           "has no joints for " + RoleList(filled) +
           ", which are filled from their neighbours; name them by \"joints\" if the file has them");
     }
-    person->joints.assign(person->hip.size(), Track(motion.tracks.size()));
-    for (std::size_t joint = 0; joint < motion.tracks.size(); ++joint) {
+    person->joints.assign(person->hip.size(), Track(motion_.tracks.size()));
+    for (std::size_t joint = 0; joint < motion_.tracks.size(); ++joint) {
       for (std::size_t frame = 0; frame < person->hip.size(); ++frame) {
-        person->joints[frame][joint] = motion.tracks[joint][frame];
+        person->joints[frame][joint] = motion_.tracks[joint][frame];
       }
     }
   }
@@ -361,11 +501,59 @@ class PersonLoader {
   Warnings* const warnings_;
   std::string path_;
   ColumnMapping mapping_;
+  JointMapping joints_;
+  FileMotion motion_;
   std::string mapping_hash_;
   double fps_ = 0.0;
 };
 
 constexpr double kUnseenStance = 0.1;  // m, of ankles that nobody saw
+
+// The person of a recording without motion, for as long as their platforms measured.
+Result<LoadedPerson> LoadPersonOnPlates(const ManifestRecording& entry) {
+  const ManifestPlates& plates = entry.plates[0];
+  const ManifestSubject& subject = entry.subjects[0];
+  LoadedPerson loaded;
+  RecordedPerson& person = loaded.person;
+  const Result<PlateTracks> read = ReadPlates(entry, plates, person);
+  if (!read.ok()) return read.error();
+  const PlateTracks& tracks = read.value();
+  person.subject_id = subject.id;
+  person.mass_kg = subject.mass_kg;
+  person.known = subject.known;
+  person.file = tracks.file;
+  person.file_clock_s = plates.start_s.value_or(tracks.first_s);
+  person.skipped_s = person.file_clock_s - tracks.first_s;
+  loaded.fps = entry.fps > 0.0 ? entry.fps : WholeFrameRate(tracks.rate_hz);
+  const std::string problem = FrameRateProblem(loaded.fps);
+  if (!problem.empty()) {
+    return Error{"the platforms' rate " + problem + "; give fps in the manifest", tracks.file};
+  }
+  const double seconds = tracks.last_s() - person.file_clock_s;
+  const int frames = 1 + static_cast<int>(std::floor(seconds * loaded.fps + 1e-6));
+  if (!(seconds > 0.0) || frames < 3) {
+    return Error{"the platforms were recorded from " + Rounded(tracks.first_s, 4) + " to " +
+                     Rounded(tracks.last_s(), 4) + " s, which leaves nothing after \"start\" (" +
+                     Rounded(person.file_clock_s, 4) + " s)",
+                 tracks.file, tracks.last_line};
+  }
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& row : tracks.moment) moment += row;
+  Eigen::Vector3d ankles(0.0, 0.0, subject.ankle_height_m);
+  if (moment.z() > 0.0) ankles.head<2>() = moment.head<2>() / moment.z();
+  const auto stays = [frames](const Eigen::Vector3d& place) {
+    return std::vector<Eigen::Vector3d>(static_cast<size_t>(frames), place);
+  };
+  person.hip = stays(ankles + Eigen::Vector3d(0.0, 0.0, subject.rod_m));
+  person.left_ankle = stays(ankles + Eigen::Vector3d(0.0, kUnseenStance, 0.0));
+  person.right_ankle = stays(ankles - Eigen::Vector3d(0.0, kUnseenStance, 0.0));
+  person.weight.assign(static_cast<size_t>(frames), 0.0);
+  const Result<std::string> hash = HashFile(tracks.file);
+  if (!hash.ok()) return hash.error();
+  loaded.file_hash = hash.value();
+  if (MaybeError failed = CheckMotion(person, 1.0)) return *std::move(failed);
+  return loaded;
+}
 
 }  // namespace
 
@@ -395,7 +583,7 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
   for (std::size_t i = 0; i < entry.subjects.size(); ++i) {
     Result<LoadedPerson> loaded = entry.plates_alone
                                       ? LoadPersonOnPlates(entry)
-                                      : LoadPerson(manifest, entry, i, options, warnings);
+                                      : PersonLoader(manifest, entry, i, options, warnings).Load();
     if (!loaded.ok()) return OfRecording(entry, loaded.error());
     hash.Add(loaded.value().file_hash);
     RecordedPerson& person = loaded.value().person;
@@ -461,56 +649,6 @@ Result<std::vector<Recording>> LoadRecordings(const Manifest& manifest, const Lo
     recordings.push_back(std::move(recording.value()));
   }
   return recordings;
-}
-
-Result<LoadedPerson> LoadPerson(const Manifest& manifest, const ManifestRecording& entry,
-                                std::size_t index, const LoadOptions& options, Warnings* warnings) {
-  return PersonLoader(manifest, entry, index, options, warnings).Load();
-}
-
-Result<LoadedPerson> LoadPersonOnPlates(const ManifestRecording& entry) {
-  const ManifestPlates& plates = entry.plates[0];
-  const ManifestSubject& subject = entry.subjects[0];
-  LoadedPerson loaded;
-  RecordedPerson& person = loaded.person;
-  const Result<PlateTracks> read = ReadPlates(entry, plates, person);
-  if (!read.ok()) return read.error();
-  const PlateTracks& tracks = read.value();
-  person.subject_id = subject.id;
-  person.mass_kg = subject.mass_kg;
-  person.known = subject.known;
-  person.file = tracks.file;
-  person.file_clock_s = plates.start_s.value_or(tracks.first_s);
-  person.skipped_s = person.file_clock_s - tracks.first_s;
-  loaded.fps = entry.fps > 0.0 ? entry.fps : WholeFrameRate(tracks.rate_hz);
-  const std::string problem = FrameRateProblem(loaded.fps);
-  if (!problem.empty()) {
-    return Error{"the platforms' rate " + problem + "; give fps in the manifest", tracks.file};
-  }
-  const double seconds = tracks.last_s() - person.file_clock_s;
-  const int frames = 1 + static_cast<int>(std::floor(seconds * loaded.fps + 1e-6));
-  if (!(seconds > 0.0) || frames < 3) {
-    return Error{"the platforms were recorded from " + Rounded(tracks.first_s, 4) + " to " +
-                     Rounded(tracks.last_s(), 4) + " s, which leaves nothing after \"start\" (" +
-                     Rounded(person.file_clock_s, 4) + " s)",
-                 tracks.file, tracks.last_line};
-  }
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& row : tracks.moment) moment += row;
-  Eigen::Vector3d ankles(0.0, 0.0, subject.ankle_height_m);
-  if (moment.z() > 0.0) ankles.head<2>() = moment.head<2>() / moment.z();
-  const auto stays = [frames](const Eigen::Vector3d& place) {
-    return std::vector<Eigen::Vector3d>(static_cast<size_t>(frames), place);
-  };
-  person.hip = stays(ankles + Eigen::Vector3d(0.0, 0.0, subject.rod_m));
-  person.left_ankle = stays(ankles + Eigen::Vector3d(0.0, kUnseenStance, 0.0));
-  person.right_ankle = stays(ankles - Eigen::Vector3d(0.0, kUnseenStance, 0.0));
-  person.weight.assign(static_cast<size_t>(frames), 0.0);
-  const Result<std::string> hash = HashFile(tracks.file);
-  if (!hash.ok()) return hash.error();
-  loaded.file_hash = hash.value();
-  if (MaybeError failed = CheckMotion(person, 1.0)) return *std::move(failed);
-  return loaded;
 }
 
 }  // namespace pushid

@@ -13,8 +13,7 @@
 #include "datasets/files/error.h"
 #include "datasets/files/input_file.h"  // HashFile
 #include "datasets/formats/units.h"
-#include "datasets/loading/motion_preparation.h"
-#include "datasets/loading/warning.h"
+#include "datasets/loading/motion_tracks.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/manifest/recording.h"
 
@@ -60,22 +59,5 @@ Result<std::vector<Recording>> LoadRecordings(const Manifest& manifest, const Lo
                                               Warnings* warnings = nullptr);
 Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecording& entry,
                                 const LoadOptions& options = {}, Warnings* warnings = nullptr);
-
-// One person of a recording from the file that holds their motion.
-
-struct LoadedPerson {
-  RecordedPerson person;
-  double fps = 0.0;              // the manifest's, otherwise the file's
-  double metres_per_unit = 1.0;  // of the file
-  std::string file_hash;         // of the file (and of the mapping, where there is one)
-};
-
-// The person of a recording without motion, for as long as their platforms measured.
-Result<LoadedPerson> LoadPersonOnPlates(const ManifestRecording& entry);
-
-// Reads the file of subject `index`, cuts it to the manifest's frames, closes gaps, turns it to the
-// project's units and axes and checks that it can be a person.
-Result<LoadedPerson> LoadPerson(const Manifest& manifest, const ManifestRecording& entry,
-                                std::size_t index, const LoadOptions& options, Warnings* warnings);
 
 }  // namespace pushid

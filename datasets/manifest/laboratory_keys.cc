@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "datasets/files/json_fields.h"
+#include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/units.h"

@@ -10,12 +10,11 @@
 #include <utility>
 
 #include "datasets/files/input_file.h"
-#include "datasets/files/json_fields.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/manifest/body_roles.h"
-#include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/joint_mapping.h"
+#include "datasets/manifest/recording.h"
 
 namespace pushid {
 namespace {

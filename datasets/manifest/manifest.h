@@ -36,10 +36,10 @@ struct JointReference {
 };
 
 // Which joints the pendulum is read from, and those that play the body's other roles; whatever is
-// absent is found by default (joint_choice.h).
+// absent is found by default (joint_mapping.h).
 struct JointMapping {
   std::optional<JointReference> hip, left_ankle, right_ankle;
-  std::map<int, JointReference> others{};  // by role (body_roles.h)
+  std::map<int, JointReference> others{};  // by role (recording.h)
 
   std::optional<JointReference> Of(int role) const;
   void Set(int role, const JointReference& joint);

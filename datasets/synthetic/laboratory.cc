@@ -8,7 +8,8 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
-#include "datasets/formats/table_writers.h"
+#include "datasets/files/numeric_table.h"
+#include "datasets/formats/point_motion.h"
 
 namespace pushid {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
-#include "datasets/loading/state_csv.h"
+#include "datasets/loading/generator_data.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 
@@ -188,8 +188,8 @@ class TalkingBody {
     const Eigen::Rotation2D<double> turn(who_.heading);
     const Eigen::Vector2d there = who_.place + turn * Eigen::Vector2d(hip.head<2>());
     double* const frame = values->data() + begin;
-    frame[0] = ConvertLength(there.x(), LengthUnit::kMetre, kTurnsUnit);
-    frame[1] = ConvertLength(there.y(), LengthUnit::kMetre, kTurnsUnit);
+    frame[0] = kMillimetres * there.x();
+    frame[1] = kMillimetres * there.y();
     // Channels are the hip's place, then three angles of each joint, about z, y and x.
     const auto turn_joint = [frame](int joint, int axis, double angle) {
       frame[3 + 3 * joint + axis] = kDegrees * angle;
@@ -317,10 +317,9 @@ MaybeError WriteSyntheticTurns(const std::string& folder, const SyntheticTurnsOp
     std::vector<std::string> files;
     std::vector<ManifestSubject> subjects;
     for (int n = 0; n < kTalkers; ++n) {
-      const BvhMotion motion{talkers[n].skeleton.Bvh(kTurnsUnit), kTurnsUnit, 1.0 / options.fps,
-                             values[n]};
+      const BvhMotion motion{talkers[n].skeleton.Bvh(kTurnsUnit), 1.0 / options.fps, values[n]};
       files.push_back("bvh/" + recording.id + "_" + std::to_string(n) + ".bvh");
-      if (MaybeError failed = WriteBvh(folder + "/" + files.back(), motion, kTurnsUnit)) {
+      if (MaybeError failed = WriteBvh(folder + "/" + files.back(), motion)) {
         return failed;
       }
       subjects.push_back({talkers[n].id, talkers[n].mass_kg});

@@ -1,5 +1,5 @@
 // datasets: synthetic clips of motion capture: a walking stick figure in the exponential-map text
-// of the literature (loading/mocap_folder.h), for trying and testing generators without outside
+// of the literature (loading/generator_data.h), for trying and testing generators without outside
 // data.
 //
 //   phi' = 2 pi c(t)      c: the action's cadence times exp(0.1 n(t)), Hz

@@ -480,7 +480,7 @@ BvhSkeleton SyntheticSkeleton::Bvh(LengthUnit unit) const {
     BvhJoint joint;
     joint.name = shape.name;
     joint.parent = shape.parent;
-    const double scale = ConvertLength(rod_, LengthUnit::kMetre, unit);
+    const double scale = RowOf(unit).per_metre * rod_;
     joint.offset = scale * Eigen::Vector3d(shape.x, shape.y, shape.z);
     const bool is_leg = j >= 14 && j != 17 && j != 21;
     const bool is_ankle = j == kRightAnkleJoint || j == kLeftAnkleJoint;
@@ -500,7 +500,7 @@ void SyntheticSkeleton::AppendFrame(const SkeletonPose& pose, LengthUnit unit,
   };
   const auto position = [&](const Eigen::Vector3d& metres) {
     for (double value : {metres.x(), metres.y(), metres.z()}) {
-      values->push_back(ConvertLength(value, LengthUnit::kMetre, unit));
+      values->push_back(RowOf(unit).per_metre * value);
     }
   };
   const Eigen::Matrix3d thigh = RotationXY(pose.phi, pose.theta - bend_);
@@ -528,7 +528,6 @@ constexpr LengthUnit kUnit = LengthUnit::kMillimetre;
 BvhMotion Motion(const SyntheticRecording& made, int n) {
   BvhMotion motion;
   motion.skeleton = made.skeletons[n].Bvh(kUnit);
-  motion.length_unit = kUnit;
   motion.frame_time_s = 1.0 / made.recording.fps;
   const RecordedPerson& person = made.recording.people[n];
   for (int t = 0; t < made.recording.num_frames(); ++t) {
@@ -659,7 +658,7 @@ MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOp
     std::vector<std::string> bvh;
     for (int n = 0; n < people; ++n) {
       bvh.push_back("bvh/" + OfPerson(made.recording, static_cast<size_t>(n)) + ".bvh");
-      if (MaybeError failed = WriteBvh(folder + "/" + bvh.back(), Motion(made, n), kUnit)) {
+      if (MaybeError failed = WriteBvh(folder + "/" + bvh.back(), Motion(made, n))) {
         return failed;
       }
     }

@@ -313,7 +313,6 @@ class HierarchyMotion {
 
   BvhMotion Write(const BodyMotion& motion, double dt) {
     BvhMotion bvh;
-    bvh.length_unit = LengthUnit::kMetre;  // as they stand
     bvh.frame_time_s = dt;
     for (const Pose& pose : motion) {
       const PosedJoints posed = Retarget(skeleton_, pose);
@@ -399,7 +398,7 @@ Result<std::vector<std::string>> WriteBodyBvh(const std::string& path, const Bod
   for (int n = 0; n < scene.num_people(); ++n) {
     files.push_back(scene.num_people() == 1 ? path : PersonsFile(path, n, scene.subject_ids[n]));
     const BvhMotion bvh = ToBvh(scene.skeleton(n), scene.bodies[n], scene.dt);
-    if (MaybeError error = WriteBvh(files.back(), bvh, bvh.length_unit)) return *error;
+    if (MaybeError error = WriteBvh(files.back(), bvh)) return *error;
   }
   return files;
 }

@@ -18,7 +18,7 @@ namespace pushid {
 
 // The joints that a person came with, and how they go with the 22 roles of a body.
 //
-// Bodies are predicted by role (datasets/manifest/body_roles.h); a motion is then taken back to the
+// Bodies are predicted by role (datasets/manifest/recording.h); a motion is then taken back to the
 // skeleton it came from. Its joints turn so that those with a role come as near as bones of
 // constant length can to where the body wants them (FitTree); a joint without a role
 // follows its parent.
@@ -66,7 +66,7 @@ struct BodyRecording {
 };
 
 // The recording must have been read with all joints. Errors: roles that no joint of a skeleton
-// plays and that its neighbours do not fill (datasets/manifest/body_roles.h).
+// plays and that its neighbours do not fill (datasets/manifest/recording.h).
 Result<BodyRecording> MakeBodyRecording(const Recording& recording);
 Result<std::vector<BodyRecording>> MakeBodyRecordings(const std::vector<Recording>& recordings);
 // Bodies of all recordings; of none where not all have such a skeleton, or nobody is in a group.

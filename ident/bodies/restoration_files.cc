@@ -8,7 +8,7 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
-#include "datasets/files/json_fields.h"
+#include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/random.h"
 #include "models/restoration/window_restoration.h"

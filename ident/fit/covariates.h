@@ -10,7 +10,6 @@
 
 #include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
-#include "datasets/loading/warning.h"
 #include "ident/model/fitted_model.h"
 #include "ident/parameters/fit_options.h"
 

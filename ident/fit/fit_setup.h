@@ -9,7 +9,6 @@
 
 #include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
-#include "datasets/loading/warning.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/model/identified_model.h"
 #include "ident/parameters/fit_options.h"

@@ -68,8 +68,6 @@ Animation ToAnimation(const ForecastScene& scene, int from) {
   return animation;
 }
 
-constexpr LengthUnit kUnit = LengthUnit::kMillimetre;
-
 // Particles in the order of a BVH file, every one followed by what hangs on it.
 void AddBelow(const ParticleLayout& layout, int parent, std::vector<int>* order) {
   for (int i = 0; i < layout.num_particles(); ++i) {
@@ -116,7 +114,7 @@ MaybeError WriteOneBvh(const std::string& path, const ForecastScene& scene,
                        const Trajectories& next) {
   Trajectories whole(scene.observed.rows(), scene.observed.cols() + next.cols());
   whole << scene.observed, next;
-  return WriteBvh(path, ToBvh(whole, scene.layout, scene.dt), kUnit);
+  return WriteBvh(path, ToBvh(whole, scene.layout, scene.dt));
 }
 
 }  // namespace
@@ -131,7 +129,6 @@ std::string ForecastStripSvg(const ForecastScene& scene, int poses) {
 
 BvhMotion ToBvh(const Trajectories& motion, const ParticleLayout& layout, double dt) {
   BvhMotion bvh;
-  bvh.length_unit = kUnit;
   bvh.frame_time_s = dt;
   std::vector<int> order;
   AddBelow(layout, kNoBone, &order);

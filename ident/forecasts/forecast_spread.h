@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/loading/mocap_folder.h"
+#include "datasets/loading/generator_data.h"
 #include "models/generators/motion_generator.h"
 
 namespace pushid {

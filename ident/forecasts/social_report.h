@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/loading/state_csv.h"
+#include "datasets/loading/generator_data.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/validation/group_metrics.h"

@@ -23,7 +23,7 @@ namespace {
 
 constexpr LengthUnit kUnit = LengthUnit::kMillimetre;
 
-double InUnit(double metres) { return ConvertLength(metres, LengthUnit::kMetre, kUnit); }
+double InUnit(double metres) { return RowOf(kUnit).per_metre * metres; }
 
 double Degrees(double radians) { return radians * 180.0 / M_PI; }
 
@@ -49,7 +49,6 @@ BvhMotion PendulumMotion(const FormationRun& run, int person) {
   const Body& body = run.recording.scene.people[person].body;
   BvhMotion motion;
   motion.skeleton = PendulumSkeleton(run.recording.scene.people[person]);
-  motion.length_unit = kUnit;
   motion.frame_time_s = run.recording.scene.dt;
   for (int t = 0; t < run.num_frames(); ++t) {
     const Vector4<double>& q = run.prediction.path.At(t, person).q;
@@ -234,8 +233,7 @@ MaybeError WriteFormationRecording(const std::string& folder, const FormationRun
     const std::string& name = run.recording.subject_ids[n];
     entry.subjects.push_back({name, scene.people[n].body.mass});
     entry.motion.push_back("bvh/" + name + ".bvh");
-    const MaybeError failed =
-        WriteBvh(folder + "/" + entry.motion.back(), PendulumMotion(run, n), kUnit);
+    const MaybeError failed = WriteBvh(folder + "/" + entry.motion.back(), PendulumMotion(run, n));
     if (failed) return failed;
   }
   for (size_t i = 0; i < scene.pushes.size(); ++i) {

@@ -140,7 +140,7 @@ Pose SyntheticPose(double rod_length) {
   skeleton.AppendFrame(upright, LengthUnit::kMetre, &row);
   std::vector<int> joints(kBodyJoints);
   for (int j = 0; j < kBodyJoints; ++j) joints[j] = j;
-  BvhKinematics kinematics(skeleton.Bvh(LengthUnit::kMetre), LengthUnit::kMetre, joints);
+  BvhKinematics kinematics(skeleton.Bvh(LengthUnit::kMetre), 1.0, joints);
   std::vector<Eigen::Vector3d> positions(kBodyJoints);
   kinematics.Positions(row.data(), positions.data());
   Pose pose;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "datasets/files/number_text.h"
-#include "datasets/loading/recording_from_tracks.h"
+#include "datasets/loading/motion_tracks.h"
 #include "models/decompositions.h"
 #include "models/rollout.h"
 #include "models/skeleton_mapping.h"

@@ -22,7 +22,7 @@
 #include "datasets/files/error.h"
 #include "datasets/formats/force_csv.h"
 #include "datasets/loading/pendulum_recording.h"
-#include "datasets/sensors/sensor_choice.h"
+#include "datasets/sensors/force_sensors.h"
 
 namespace pushid {
 

@@ -5,9 +5,9 @@
 #include <numeric>
 #include <tuple>
 
+#include "datasets/files/error.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/loading/warning.h"
 #include "ident/parameters/fit_options.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/problem/behaviour.h"

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "datasets/files/input_file.h"
+#include "datasets/loading/generator_data.h"
 #include "ident/generators/generator_files.h"
 #include "ident/problem/parallel.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/loading/mocap_folder.h"
+#include "datasets/loading/generator_data.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/generators/generator_files.h"
 #include "ident/problem/folds.h"

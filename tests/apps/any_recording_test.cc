@@ -7,7 +7,6 @@
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/point_motion.h"
-#include "datasets/formats/table_writers.h"
 #include "datasets/loading/load_recordings.h"
 #include "tests/apps/app_fixture.h"
 #include "tests/datasets/c3d_samples.h"

@@ -8,6 +8,7 @@
 #include "datasets/formats/bvh.h"
 #include "datasets/manifest/manifest.h"
 #include "tests/apps/app_fixture.h"
+#include "tests/datasets/recording_folder.h"
 
 namespace pushid {
 
@@ -37,7 +38,7 @@ class AnySkeletonTest : public AppTest {
   }
 
   void Rename(const std::string& path) {
-    BvhMotion motion = ReadBvh(path, {LengthUnit::kMillimetre}).value();
+    BvhMotion motion = ReadBvh(path).value();
     const std::vector<double> values = motion.values;
     const int channels = motion.skeleton.num_channels(), frames = motion.num_frames();
     std::vector<BvhJoint>& joints = motion.skeleton.joints;
@@ -60,27 +61,8 @@ class AnySkeletonTest : public AppTest {
       motion.values.insert(motion.values.end(), 3, 0.0);
       motion.values.insert(motion.values.end(), row + before, row + channels);
     }
-    InOddUnits(&motion);
-    ASSERT_FALSE(WriteBvh(path, motion, LengthUnit::kMetre));
-  }
-
-  // Millimetres to lengths of 0.0564 m.
-  static void InOddUnits(BvhMotion* motion) {
     constexpr double kUnitsPerMillimetre = 1e-3 / 0.0564;
-    std::size_t value = 0;
-    for (BvhJoint& joint : motion->skeleton.joints) {
-      joint.offset *= kUnitsPerMillimetre;
-      for (Eigen::Vector3d& end : joint.end_sites) end *= kUnitsPerMillimetre;
-    }
-    while (value < motion->values.size()) {
-      for (const BvhJoint& joint : motion->skeleton.joints) {
-        for (const BvhChannel channel : joint.channels) {
-          if (!IsRotation(channel)) motion->values[value] *= kUnitsPerMillimetre;
-          ++value;
-        }
-      }
-    }
-    motion->length_unit = LengthUnit::kMetre;
+    ASSERT_FALSE(WriteBvh(path, Scaled(motion, kUnitsPerMillimetre)));
   }
 
   std::string Model() {

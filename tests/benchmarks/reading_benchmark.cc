@@ -13,7 +13,6 @@
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/point_motion.h"
-#include "datasets/formats/table_writers.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "tests/datasets/c3d_writer.h"
 
@@ -60,7 +59,6 @@ MaybeError MakeBvh(const std::string& path) {
   const SyntheticSkeleton skeleton(0.9);
   BvhMotion motion;
   motion.skeleton = skeleton.Bvh(LengthUnit::kMillimetre);
-  motion.length_unit = LengthUnit::kMillimetre;
   motion.frame_time_s = 1.0 / 60.0;
   for (int t = 0; t < kBvhFrames; ++t) {
     SkeletonPose pose;
@@ -72,7 +70,7 @@ MaybeError MakeBvh(const std::string& path) {
     skeleton.AppendFrame(pose, LengthUnit::kMillimetre, &motion.values);
   }
   for (double& value : motion.values) value = Rounded6(value + 30.0 * random.Normal());
-  return WriteBvh(path, motion, LengthUnit::kMillimetre);
+  return WriteBvh(path, motion);
 }
 
 PointMotion Points() {

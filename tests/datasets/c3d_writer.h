@@ -11,7 +11,6 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/c3d.h"
-#include "datasets/formats/c3d_parameters.h"
 
 namespace pushid {
 

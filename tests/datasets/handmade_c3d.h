@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "datasets/formats/c3d.h"
-#include "datasets/formats/c3d_parameters.h"
 #include "tests/datasets/c3d_writer.h"
 
 namespace pushid {

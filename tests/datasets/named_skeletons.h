@@ -122,7 +122,6 @@ inline BvhMotion MotionOf(const std::vector<NamedJoint>& joints,
                           const std::vector<Eigen::Vector3d>& roots, double metres_per_unit = 1.0,
                           double turn_degrees = 0.0) {
   BvhMotion motion;
-  motion.length_unit = LengthUnit::kMetre;
   motion.frame_time_s = 1.0 / 60.0;
   motion.skeleton = BvhOf(joints, metres_per_unit);
   for (const Eigen::Vector3d& root : roots) {

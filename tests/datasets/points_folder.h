@@ -10,7 +10,6 @@
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/point_motion.h"
-#include "datasets/formats/table_writers.h"
 #include "tests/datasets/c3d_writer.h"
 #include "tests/datasets/recording_folder.h"
 #include "tests/test_support.h"

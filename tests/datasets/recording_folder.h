@@ -16,7 +16,6 @@ namespace pushid {
 // A hip that moves forward over two standing feet; axes and unit of the file are free.
 inline BvhMotion Walker(int frames, double hip_height_m = 0.95) {
   BvhMotion motion;
-  motion.length_unit = LengthUnit::kMetre;
   motion.frame_time_s = 0.016667;
   BvhJoint hip, left, right;
   hip.name = "Pelvis";
@@ -33,6 +32,20 @@ inline BvhMotion Walker(int frames, double hip_height_m = 0.95) {
                                      -x, 0.1,  0.08 - hip_height_m, 0, 0, 0,  //
                                      -x, -0.1, 0.08 - hip_height_m, 0, 0, 0};
     motion.values.insert(motion.values.end(), row.begin(), row.end());
+  }
+  return motion;
+}
+
+// The same motion in a unit of which so many make the present one.
+inline BvhMotion Scaled(BvhMotion motion, double factor) {
+  std::vector<bool> rotation;
+  for (BvhJoint& joint : motion.skeleton.joints) {
+    joint.offset *= factor;
+    for (Eigen::Vector3d& end : joint.end_sites) end *= factor;
+    for (const BvhChannel channel : joint.channels) rotation.push_back(IsRotation(channel));
+  }
+  for (std::size_t i = 0; i < motion.values.size(); ++i) {
+    if (!rotation[i % rotation.size()]) motion.values[i] *= factor;
   }
   return motion;
 }
@@ -55,9 +68,11 @@ class RecordingFolderTest : public TempDirTest {
     manifest_.recordings = {recording};
   }
 
+  // motion: in metres.
   void WriteBvhFile(const std::string& name, const BvhMotion& motion,
                     LengthUnit unit = LengthUnit::kMillimetre) const {
-    ASSERT_EQ(ProblemOf(WriteBvh(Path(name), motion, unit)), "no error");
+    const BvhMotion written = Scaled(motion, RowOf(unit).per_metre);
+    ASSERT_EQ(ProblemOf(WriteBvh(Path(name), written)), "no error");
   }
 
   void WritePush(const std::string& name, int rows) const {

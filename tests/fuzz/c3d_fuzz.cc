@@ -1,6 +1,6 @@
 // C3D: any bytes are an Error or a file whose parts fit together.
 #include "datasets/formats/c3d.h"
-#include "datasets/sensors/force_platform.h"
+#include "datasets/sensors/force_sensors.h"
 #include "tests/fuzz/memory_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

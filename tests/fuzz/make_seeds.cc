@@ -12,7 +12,6 @@
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/force_csv.h"
 #include "datasets/formats/point_motion.h"
-#include "datasets/formats/table_writers.h"
 #include "datasets/formats/trajectories.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/synthetic/synthetic_recordings.h"

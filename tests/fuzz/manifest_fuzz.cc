@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/json_file.h"
-#include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/joint_mapping.h"
 #include "datasets/manifest/manifest.h"
-#include "datasets/sensors/sensor_choice.h"
+#include "datasets/sensors/force_sensors.h"
 #include "tests/fuzz/memory_file.h"
 
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "datasets/loading/generator_data.h"
 #include "datasets/loading/load_recordings.h"
-#include "datasets/loading/state_csv.h"
 #include "datasets/synthetic/synthetic_clips.h"
 #include "ident/bodies/body_recording.h"
 #include "tests/test_support.h"

@@ -67,7 +67,7 @@ TEST_F(RestorationAppTest, TrainsEvaluatesAndPredicts) {
       RunApp("pushid-predict", {model_, Recordings(), restoration, "--id=" + id_,
                                 "--out=" + Path("m.bvh"), "--poses_out=" + Path("j.csv")}));
   EXPECT_TRUE(Contains(predict.out, "MPJPE"));
-  const auto bvh = Unwrapped(ReadBvhPositions(Path("m.bvh"), {LengthUnit::kMillimetre, {}, {}}));
+  const auto bvh = Unwrapped(ReadBvhPositions(Path("m.bvh")));
   EXPECT_EQ(bvh.num_frames(), 45);
   const std::vector<Eigen::Vector3d> joints = JointsOf(Path("j.csv"));
   EXPECT_LT((joints[44 * 22 + 9] - bvh.positions[9][44]).norm(), 4e-5);

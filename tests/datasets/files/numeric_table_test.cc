@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "datasets/formats/table_writers.h"
 #include "tests/test_support.h"
 
 namespace pushid {

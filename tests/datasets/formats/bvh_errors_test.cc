@@ -163,7 +163,7 @@ TEST_F(BvhErrorsTest, NumbersInEveryForm) {
   BvhMotion read = Unwrapped(ReadBvh(path));
   // Where nobody asks for their values too; of the frame that is kept all are.
   BvhPositionOptions of_root;
-  of_root.joints = {"a0"};
+  of_root.choose_joints = [](const BvhSkeleton&) { return std::vector<int>{0}; };
   EXPECT_EQ(Unwrapped(ReadBvhPositions(path, of_root)).positions[0].size(), 2u);
   of_root.kept_frame = 1;
   read.values.resize(tokens.size());

@@ -25,11 +25,11 @@ BvhJoint Joint(const std::string& name, int parent, const Vector3d& offset,
 }
 
 std::vector<Vector3d> Positions(const BvhSkeleton& skeleton, const std::vector<double>& row,
-                                LengthUnit unit = LengthUnit::kMetre) {
+                                double metres_per_unit = 1.0) {
   std::vector<int> all;
   for (std::size_t i = 0; i < skeleton.joints.size(); ++i) all.push_back(static_cast<int>(i));
   std::vector<Vector3d> positions(all.size(), Vector3d::Constant(std::nan("")));
-  BvhKinematics(skeleton, unit, all).Positions(row.data(), positions.data());
+  BvhKinematics(skeleton, metres_per_unit, all).Positions(row.data(), positions.data());
   return positions;
 }
 
@@ -72,7 +72,7 @@ TEST(BvhKinematics, MillimetresBecomeMetres) {
   BvhSkeleton skeleton;
   skeleton.joints = {Joint("root", -1, Vector3d::Zero(), DefaultBvhChannels(true)),
                      Joint("child", 0, Vector3d(0, 0, -450), {})};
-  const auto p = Positions(skeleton, {1000, 2000, 950, 0, 0, 0}, LengthUnit::kMillimetre);
+  const auto p = Positions(skeleton, {1000, 2000, 950, 0, 0, 0}, 1e-3);
   ExpectNear(p[0], Vector3d(1, 2, 0.95));
   ExpectNear(p[1], Vector3d(1, 2, 0.5));
 }
@@ -105,7 +105,7 @@ TEST(BvhKinematics, AgreesWithRotationProducts) {
     for (int i = 0; i < 7; ++i) ExpectNear(p[i], expected[i]);
 
     std::vector<Vector3d> chosen(2);
-    BvhKinematics(skeleton, LengthUnit::kMetre, {5, 2}).Positions(row.data(), chosen.data());
+    BvhKinematics(skeleton, 1.0, {5, 2}).Positions(row.data(), chosen.data());
     EXPECT_EQ(chosen[0], p[5]);
     EXPECT_EQ(chosen[1], p[2]);
   } while (std::next_permutation(order.begin(), order.end()));

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "datasets/files/input_file.h"
+#include "tests/datasets/recording_folder.h"
 #include "tests/test_support.h"
 
 namespace pushid {
@@ -93,7 +94,6 @@ BvhMotion RandomMotion(unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0.0, 100.0);
   BvhMotion motion;
-  motion.length_unit = LengthUnit::kMillimetre;
   motion.frame_time_s = 1.0 / 60.0;
   const int parents[] = {-1, 0, 1, 1, 3, 0, -1, 6};
   for (int i = 0; i < 8; ++i) {
@@ -116,7 +116,7 @@ BvhMotion RandomMotion(unsigned seed) {
 TEST_F(BvhTest, WrittenMotionReadsBackBitForBit) {
   for (unsigned seed = 0; seed < 5; ++seed) {
     const BvhMotion motion = RandomMotion(seed);
-    ASSERT_EQ(ProblemOf(WriteBvh(Path("a.bvh"), motion, motion.length_unit)), "no error");
+    ASSERT_EQ(ProblemOf(WriteBvh(Path("a.bvh"), motion)), "no error");
     const BvhMotion read = Unwrapped(ReadBvh(Path("a.bvh")));
     EXPECT_EQ(read.values, motion.values);
     EXPECT_EQ(read.frame_time_s, motion.frame_time_s);
@@ -131,7 +131,7 @@ TEST_F(BvhTest, WrittenMotionReadsBackBitForBit) {
       EXPECT_EQ(a.end_sites, b.end_sites);
     }
     const std::string once = ReadText(Path("a.bvh"));
-    ASSERT_FALSE(WriteBvh(Path("b.bvh"), read, read.length_unit));
+    ASSERT_FALSE(WriteBvh(Path("b.bvh"), read));
     EXPECT_EQ(ReadText(Path("b.bvh")), once);
   }
 }
@@ -139,10 +139,10 @@ TEST_F(BvhTest, WrittenMotionReadsBackBitForBit) {
 TEST_F(BvhTest, UnitsOfTheFileDoNotChangePositions) {
   const BvhMotion motion = RandomMotion(7);
   std::vector<BvhPositions> positions;
-  for (LengthUnit unit : {LengthUnit::kMillimetre, LengthUnit::kCentimetre, LengthUnit::kMetre}) {
-    ASSERT_FALSE(WriteBvh(Path("a.bvh"), motion, unit));
+  for (double metres : {1e-3, 1e-2, 1.0}) {
+    ASSERT_FALSE(WriteBvh(Path("a.bvh"), Scaled(motion, 1e-3 / metres)));
     BvhPositionOptions options;
-    options.length_unit = unit;
+    options.metres_per_unit = metres;
     BvhPositions read = Unwrapped(ReadBvhPositions(Path("a.bvh"), options));
     positions.push_back(read);
   }
@@ -162,7 +162,7 @@ TEST_F(BvhTest, UnitsOfTheFileDoNotChangePositions) {
 TEST_F(BvhTest, LeafWithoutEndSiteGetsOne) {
   BvhMotion motion = RandomMotion(1);
   motion.skeleton.joints[2].end_sites.clear();
-  ASSERT_FALSE(WriteBvh(Path("a.bvh"), motion, motion.length_unit));
+  ASSERT_FALSE(WriteBvh(Path("a.bvh"), motion));
   const BvhMotion read = Unwrapped(ReadBvh(Path("a.bvh")));
   ASSERT_EQ(read.skeleton.joints[2].end_sites.size(), 1u);
   EXPECT_TRUE(read.skeleton.joints[2].end_sites[0].isZero());
@@ -189,7 +189,7 @@ TEST_F(BvhTest, WriterRefusesWhatNobodyCouldRead) {
   for (const auto& [part, damage] : cases) {
     BvhMotion motion = RandomMotion(3);
     damage(&motion);
-    EXPECT_TRUE(Contains(ProblemOf(WriteBvh(Path("a.bvh"), motion, motion.length_unit)), part));
+    EXPECT_TRUE(Contains(ProblemOf(WriteBvh(Path("a.bvh"), motion)), part));
     EXPECT_EQ(CountFiles(), 0);
   }
 }
@@ -197,15 +197,13 @@ TEST_F(BvhTest, WriterRefusesWhatNobodyCouldRead) {
 TEST_F(BvhTest, PositionsAreThoseAskedForAndTheHashIsTheFiles) {
   const std::string path = WriteText("a.bvh", kTwoJoints);
   BvhPositionOptions options;
-  options.joints = {"Left Leg"};
+  options.choose_joints = [](const BvhSkeleton& skeleton) -> Result<std::vector<int>> {
+    return std::vector<int>{skeleton.Find("Left Leg")};
+  };
   const BvhPositions read = Unwrapped(ReadBvhPositions(path, options));
   EXPECT_EQ(read.joints, std::vector<int>{1});
   EXPECT_EQ(read.num_frames(), 2);
   EXPECT_EQ(read.content_hash, HashFile(path).value());
-
-  options.joints = {"Left Foot"};
-  EXPECT_EQ(ProblemOf(ReadBvhPositions(path, options)),
-            path + ": there is no joint 'Left Foot'; it has Hips, Left Leg");
 }
 
 // Rows longer than the reader's buffer and joints deeper than any stack.
@@ -222,7 +220,7 @@ TEST_F(BvhTest, VeryDeepHierarchy) {
     text += "\n";
   }
   BvhPositionOptions options;
-  options.joints = {"j59999"};
+  options.choose_joints = [](const BvhSkeleton&) { return std::vector<int>{kJoints - 1}; };
   const BvhPositions read = Unwrapped(ReadBvhPositions(WriteText("deep.bvh", text), options));
   EXPECT_NEAR(read.positions[0][2].z(), 60.0, 1e-9);
 }

@@ -8,8 +8,7 @@
 #include <cstring>
 #include <limits>
 
-#include "datasets/formats/c3d_parameters.h"
-#include "datasets/sensors/force_platform.h"
+#include "datasets/sensors/force_sensors.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
 #include "tests/test_support.h"
@@ -179,9 +178,7 @@ TEST_F(C3dTest, TruncatedAnywhereIsAnErrorOrTheWholeFrames) {
   for (std::size_t size = 0; size + 512 < text.size(); size += 37) {
     WriteText("b.c3d", text.substr(0, size));
     EXPECT_FALSE(ReadC3d(Path("b.c3d")).ok()) << size;
-    C3dReadOptions options;
-    options.accept_truncated = true;
-    const Result<C3dFile> read = ReadC3d(Path("b.c3d"), options);
+    const Result<C3dFile> read = ReadC3d(Path("b.c3d"), true);
     if (!read.ok()) continue;
     EXPECT_LT(read.value().num_frames(), frames);
     EXPECT_EQ(read.value().announced_frames, frames);
@@ -228,9 +225,7 @@ TEST(C3dSamples, Vicon) {
 TEST(C3dSamples, OptotrakIsCutShort) {
   if (C3dSamplesRoot().empty()) GTEST_SKIP() << kNoC3dSamples;
   const std::string path = C3dSamplesRoot() + "/Optotrak.c3d";
-  C3dReadOptions options;
-  options.accept_truncated = true;
-  const C3dFile file = Unwrapped(ReadC3d(path, options));
+  const C3dFile file = Unwrapped(ReadC3d(path, true));
   EXPECT_EQ(file.points.size(), 54u);
   EXPECT_EQ(file.announced_frames, 1149);
   EXPECT_EQ(file.point_rate_hz, 30.0);

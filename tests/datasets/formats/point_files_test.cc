@@ -5,8 +5,7 @@
 
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/point_motion.h"
-#include "datasets/formats/table_writers.h"
-#include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/joint_mapping.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/test_support.h"
 

@@ -9,7 +9,6 @@
 #include <tuple>
 
 #include "datasets/formats/point_motion.h"
-#include "datasets/formats/table_writers.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
 #include "tests/datasets/recording_folder.h"

@@ -5,7 +5,7 @@
 
 #include "datasets/loading/foot_steps.h"
 #include "datasets/loading/load_recordings.h"
-#include "datasets/manifest/joint_choice.h"
+#include "datasets/manifest/joint_mapping.h"
 #include "tests/datasets/points_folder.h"
 #include "tests/test_support.h"
 

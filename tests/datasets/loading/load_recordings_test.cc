@@ -206,7 +206,6 @@ TEST_F(LoadRecordingsTest, TwentyTwoJoints) {
   const int parents[] = {-1, 0,  1,  2, 3,  4,  3,  6, 7,  8,  3,
                          10, 11, 12, 0, 14, 15, 16, 0, 18, 19, 20};
   BvhMotion motion;
-  motion.length_unit = LengthUnit::kMetre;
   motion.frame_time_s = 1.0 / 60.0;
   for (int i = 0; i < 22; ++i) {
     BvhJoint joint;

@@ -1,11 +1,10 @@
 // Gaps, low-pass and resampling: hand-made cases and properties.
-#include "datasets/loading/motion_preparation.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "datasets/files/random.h"
+#include "datasets/loading/motion_tracks.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "tests/datasets/points_folder.h"
 #include "tests/test_support.h"

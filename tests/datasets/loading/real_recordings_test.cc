@@ -75,7 +75,7 @@ TEST_F(RealRoundTrip, Bvh) {
   const Manifest manifest = Unwrapped(ReadManifest(RecordingsRoot() + "/manifest.json"));
   const std::string path = ResolvePath(manifest.path, manifest.recordings.back().motion.back());
   const BvhMotion original = Unwrapped(ReadBvh(path));
-  ASSERT_FALSE(WriteBvh(Path("a.bvh"), original, original.length_unit));
+  ASSERT_FALSE(WriteBvh(Path("a.bvh"), original));
   const BvhMotion copy = Unwrapped(ReadBvh(Path("a.bvh")));
   EXPECT_EQ(copy.values, original.values);
   EXPECT_EQ(copy.skeleton.joints.size(), 22u);

@@ -1,6 +1,4 @@
 // A recording from tracks in memory: as from files, and refused for the same reasons.
-#include "datasets/loading/recording_from_tracks.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "datasets/loading/motion_tracks.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -1,10 +1,9 @@
 // States of people from CSV: a file by hand, and mistakes by line.
-#include "datasets/loading/state_csv.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
 
+#include "datasets/loading/generator_data.h"
 #include "tests/test_support.h"
 
 namespace pushid {

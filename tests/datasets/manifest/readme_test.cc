@@ -4,7 +4,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/joint_mapping.h"
 #include "datasets/manifest/manifest.h"
 #include "tests/test_support.h"
 

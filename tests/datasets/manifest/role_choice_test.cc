@@ -1,7 +1,7 @@
 // Who plays which role, in the skeletons and marker sets of the field.
 #include <gtest/gtest.h>
 
-#include "datasets/manifest/joint_choice.h"
+#include "datasets/manifest/joint_mapping.h"
 #include "tests/datasets/named_skeletons.h"
 #include "tests/test_support.h"
 

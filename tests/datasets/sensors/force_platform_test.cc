@@ -1,11 +1,10 @@
 // Force platforms: the same known load through the channels of all four types.
-#include "datasets/sensors/force_platform.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "datasets/sensors/force_sensors.h"
 #include "models/decompositions.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/test_support.h"

@@ -1,9 +1,8 @@
 // Force sensors in C3D, storage and CSV files, and lists of them.
-#include "datasets/sensors/sensor_choice.h"
-
 #include <gtest/gtest.h>
 
 #include "datasets/files/numeric_table.h"
+#include "datasets/sensors/force_sensors.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
 #include "tests/test_support.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "datasets/files/random.h"
-#include "datasets/sensors/sensor_choice.h"
+#include "datasets/sensors/force_sensors.h"
 
 namespace pushid {
 namespace {

@@ -219,7 +219,7 @@ TEST_F(SyntheticRecordings, SkeletonIsRigid) {
   EXPECT_EQ(bvh.Find("RightAnkle"), kRightAnkleJoint);
   std::vector<int> all(kSkeletonJoints);
   for (int j = 0; j < kSkeletonJoints; ++j) all[j] = j;
-  BvhKinematics kinematics(bvh, LengthUnit::kMetre, all);
+  BvhKinematics kinematics(bvh, 1.0, all);
   for (int t : {0, 20, 60}) {
     const Vector4<double>& q = made[0].path.At(t, 0).q;
     const RecordedPerson& person = made[0].recording.people[0];

@@ -181,7 +181,7 @@ TEST_F(BodyFilesTest, BvhHoldsTheMotion) {
   scene.bodies = {motion};
   const auto files = Unwrapped(WriteBodyBvh(Path("m.bvh"), scene));
   EXPECT_EQ(files, std::vector<std::string>{Path("m.bvh")});
-  const auto read = Unwrapped(ReadBvhPositions(Path("m.bvh"), {LengthUnit::kMillimetre, {}, {}}));
+  const auto read = Unwrapped(ReadBvhPositions(Path("m.bvh")));
   ASSERT_EQ(read.num_frames(), 12);
   for (int t = 0; t < 12; ++t) {
     const Pose carried = FitSkeleton(motion[0], motion[t]).positions;

@@ -32,7 +32,7 @@ TEST_F(ForecastSceneTest, ABvhHoldsThePositionsExactly) {
   EXPECT_TRUE(Contains(files[2], "m_future_2.bvh"));
   ASSERT_TRUE(WritePoses(Path("m.BVH"), scene).ok());
   EXPECT_EQ(ReadText(Path("m.BVH")).substr(0, 9), "HIERARCHY") << "whatever the case";
-  const auto read = Unwrapped(ReadBvhPositions(Path("m.bvh"), {LengthUnit::kMillimetre, {}, {}}));
+  const auto read = Unwrapped(ReadBvhPositions(Path("m.bvh")));
   ASSERT_EQ(read.num_frames(), 18);
   for (int i = 0; i < 4; ++i) {
     const int joint = read.skeleton.Find(scene.layout.names[i]);

@@ -1,5 +1,5 @@
 // datasets: warnings of many recordings, said once.
-#include "datasets/loading/warning.h"
+#include "datasets/files/error.h"
 
 #include <algorithm>
 

@@ -1,7 +1,10 @@
 // apps: --published by name.
+#pragma once
+
 #include <gflags/gflags.h>
 
-#include "apps/flags/body_flags.h"
+#include <optional>
+
 #include "datasets/files/names.h"
 #include "ident/generators/generator_files.h"
 
@@ -12,7 +15,8 @@ DEFINE_string(
 
 namespace pushid {
 
-std::optional<GeneratorKind> PublishedKind() {
+// The kind of generator whose paper's settings are asked for, if any.
+inline std::optional<GeneratorKind> PublishedKind() {
   if (FLAGS_published.empty()) return std::nullopt;
   for (const GeneratorKindRow& row : kGeneratorKinds) {
     if (FLAGS_published == row.paper) return row.value;

@@ -1,8 +1,13 @@
-// apps: --observed.
+// apps: --observed, of every program that predicts recordings.
+#pragma once
+
 #include <gflags/gflags.h>
 
+#include <vector>
+
 #include "apps/flags/command_line.h"
-#include "apps/flags/futures_flags.h"
+#include "datasets/loading/pendulum_recording.h"
+#include "ident/model/identified_model.h"
 #include "ident/prediction/evaluation.h"
 
 DEFINE_int32(observed, 0,
@@ -15,15 +20,23 @@ DEFINE_string(forecast, pushid::NameOf(pushid::ForecastUse::kBoth),
 
 namespace pushid {
 
-ForecastUse ForecastUseFlag() {
+// --forecast: who forecasts after observed frames.
+inline ForecastUse ForecastUseFlag() {
   ForecastUse use = ForecastUse::kBoth;
   ParseName("--forecast", FLAGS_forecast, &use);  // CheckObservedFlag refuses other names
   return use;
 }
 
-int ObservedFrames() { return Given("observed") ? FLAGS_observed : 0; }
+inline int ObservedFrames() { return Given("observed") ? FLAGS_observed : 0; }
 
-void CheckObservedFlag() {
+// Throw where --observed and --forecast do not go together, with these recordings, or with this
+// model.
+inline void CheckObservedFlag(const std::vector<PendulumRecording>& recordings) {
+  if (!Given("observed")) return;
+  OrFail(CheckObserved(recordings, FLAGS_observed));
+}
+
+inline void CheckObservedFlag() {
   ForecastUse use;
   OrFail(ParseName("--forecast", FLAGS_forecast, &use));
   if (Given("forecast") && !Given("observed")) {
@@ -32,13 +45,8 @@ void CheckObservedFlag() {
   CheckObservedFlag({});
 }
 
-void CheckObservedFlag(const std::vector<PendulumRecording>& recordings) {
-  if (!Given("observed")) return;
-  OrFail(CheckObserved(recordings, FLAGS_observed));
-}
-
-void CheckObservedFlag(const std::vector<PendulumRecording>& recordings,
-                       const IdentifiedModel& model) {
+inline void CheckObservedFlag(const std::vector<PendulumRecording>& recordings,
+                              const IdentifiedModel& model) {
   if (!Given("observed")) return;
   OrFail(CheckLearnsFromFrames(model));
   CheckObservedFlag(recordings);

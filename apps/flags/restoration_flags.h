@@ -1,13 +1,17 @@
-// apps: loading what --restoration names.
+// apps: the flags by which an executable takes a restoration.
+#pragma once
 
 #include <gflags/gflags.h>
 
-#include "apps/flags/body_flags.h"
-#include "apps/flags/command_line.h"
+#include <memory>
+#include <string>
+
+#include "apps/flags/postprocess_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/restoration_files.h"
+#include "models/restoration/restoration.h"
 
 DEFINE_string(restoration, "",
               "whole bodies: the folder that pushid-train-restoration --out wrote, or rigid");
@@ -17,7 +21,15 @@ DEFINE_string(latent, pushid::NameOf(pushid::LatentChoice{}.latent),
 
 namespace pushid {
 
-RestorationFlags RestorationFlagsFromCommandLine(const std::string& otherwise) {
+struct RestorationFlags {
+  std::string name;  // folder of pushid-train-restoration, or rigid; empty: no bodies
+  PostprocessOptions postprocess;
+  LatentChoice latent;  // of a cvae
+
+  bool given() const { return !name.empty(); }
+};
+
+inline RestorationFlags RestorationFlagsFromCommandLine(const std::string& otherwise = "") {
   RestorationFlags flags;
   flags.name = FLAGS_restoration.empty() ? otherwise : FLAGS_restoration;
   const size_t colon = FLAGS_latent.find(':');
@@ -38,10 +50,8 @@ RestorationFlags RestorationFlagsFromCommandLine(const std::string& otherwise) {
   return flags;
 }
 
-namespace {
-
 // Warns where a restoration that never saw a group is used for one.
-void WarnOfCrowd(const RestorationFlags& flags, int people) {
+inline void WarnOfCrowd(const RestorationFlags& flags, int people) {
   if (people < 2) return;
   if (OrFail(LearnedAlone(flags.name))) {
     LOG(WARNING)
@@ -51,16 +61,18 @@ void WarnOfCrowd(const RestorationFlags& flags, int people) {
   }
 }
 
-}  // namespace
-
-std::unique_ptr<Restoration> LoadFlaggedRestoration(const RestorationFlags& flags, int people) {
+// people: the most in one recording. Warns where a restoration that never saw a group is used for
+// one.
+inline std::unique_ptr<Restoration> LoadFlaggedRestoration(const RestorationFlags& flags,
+                                                           int people) {
   std::unique_ptr<Restoration> restoration = OrFail(LoadRestoration(flags.name));
   OrFail(ChooseLatent(flags.latent, restoration.get()));
   WarnOfCrowd(flags, people);
   return restoration;
 }
 
-Error NeedsRestoration(const std::string& flag) {
+// "--poses_out needs bodies: name the folder ...".
+inline Error NeedsRestoration(const std::string& flag) {
   return Error{"--" + flag +
                " needs bodies: --restoration=rigid, or the folder of pushid-train-restoration"};
 }

@@ -1,25 +1,30 @@
-// apps: --overwrite.
+// apps: --overwrite, for programs whose outputs a person may have edited or cannot make again.
+#pragma once
+
 #include <gflags/gflags.h>
 
 #include <filesystem>
+#include <string>
 
-#include "apps/flags/recording_flags.h"
 #include "datasets/files/json_file.h"
 
 DEFINE_bool(overwrite, false, "replace existing recordings, manifests, pushes and figures");
 
 namespace pushid {
 
-bool OverwriteGiven() { return FLAGS_overwrite; }
-
-MaybeError CheckNew(const std::string& flag, const std::string& file, const std::string& besides) {
+// An Error where the file is there and --overwrite is not given. flag names the file. besides: what
+// else may be done ("; --update keeps ...").
+inline MaybeError CheckNew(const std::string& flag, const std::string& file,
+                           const std::string& besides = "") {
   std::error_code ignored;
   if (FLAGS_overwrite || !std::filesystem::exists(file, ignored)) return std::nullopt;
   throw Error{"already exists; --overwrite replaces it" + besides + "; or name another --" + flag,
               file};
 }
 
-MaybeError CheckOutputFolder(const std::string& flag, const std::string& folder) {
+// As above, for a folder of recordings that pushid-simulate writes: --overwrite replaces only its
+// earlier output, real recordings stay.
+inline MaybeError CheckOutputFolder(const std::string& flag, const std::string& folder) {
   namespace fs = std::filesystem;
   std::error_code ignored;
   if (!fs::exists(folder, ignored)) return std::nullopt;

@@ -1,16 +1,18 @@
-// apps: --postprocess.
+// apps: --postprocess, corrections of restored bodies.
+#pragma once
+
 #include <gflags/gflags.h>
 
-#include "apps/flags/body_flags.h"
+#include "datasets/files/names.h"
+#include "models/restoration/postprocess.h"
 
 DEFINE_string(postprocess, "fade,bones,feet",
               "corrections of restored bodies: fade (start at the first pose), bones (constant "
               "lengths), feet (standing feet do not slide), comma-separated; or none");
-#include "datasets/files/names.h"
 
 namespace pushid {
 
-PostprocessOptions PostprocessFromCommandLine() {
+inline PostprocessOptions PostprocessFromCommandLine() {
   PostprocessOptions options;
   options.fade_residual = options.keep_bones = options.lock_feet = false;
   if (FLAGS_postprocess == "none") return options;

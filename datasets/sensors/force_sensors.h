@@ -3,13 +3,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/formats/c3d.h"
 #include "datasets/formats/force_csv.h"
+#include "datasets/formats/units.h"
 #include "datasets/manifest/recording.h"
 
 namespace pushid {
@@ -53,35 +54,38 @@ void SubtractRest(SensorRecord* record);
 // Files are relative to the list. Also up and forward.
 Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path);
 
-// Columns of numbers with their times, from CSV and OpenSim storage files.
-
-struct TimedColumns {
-  std::string file;
-  double first_s = 0.0;                     // of the first row, on the file's clock
-  double rate_hz = 0.0;                     // evenly spaced
-  std::vector<std::vector<double>> values;  // [as chosen][row]; NaN where a cell is empty
-  std::vector<int> lines;                   // of each row
-
-  int num_rows() const { return static_cast<int>(lines.size()); }
-  double last_s() const { return first_s + (num_rows() - 1) / rate_hz; }
+// What a force platform of a C3D file measured: force, centre of pressure, free moment.
+//
+// The four types of the C3D manual differ in what the channels are:
+//   1  Fx Fy Fz Px Py Tz          centre of pressure measured
+//   2  Fx Fy Fz Mx My Mz          force and moment
+//   3  Fx12 Fx34 Fy14 Fy23 Fz1 Fz2 Fz3 Fz4    four sensors at (+-a, +-b), [a, b, az0] = ORIGIN:
+//        Mx = b (Fz1 + Fz2 - Fz3 - Fz4), My = a (-Fz1 + Fz2 + Fz3 - Fz4),
+//        Mz = b (-Fx12 + Fx34) + a (Fy14 - Fy23)
+//   4  as 2 after [F, M] = CAL_MATRIX channels
+// In the platform's axes, at the centre of its surface: M_s = M + F x ORIGIN (ORIGIN: from the
+// sensors' origin to the surface; type 3: [0, 0, az0]; z points into the platform, so ORIGIN_z is
+// negative, and a positive one is taken as negative). Centre of pressure (-My/Fz, Mx/Fz), free
+// moment Tz = Mz - x Fy + y Fx. Axes from the corners 1 (+x, +y), 2 (-x, +y), 3 (-x, -y), 4 (+x,
+// -y).
+struct PlatformRecord {
+  double rate_hz = 0.0;
+  // Per sample, in the file's axes. The force on the person: programs store either it or its
+  // reaction, but a platform can only be pressed, never pulled, so the sign is the one that makes
+  // the impulse point out of the surface.
+  std::vector<Eigen::Vector3d> force;  // N
+  // Points on the surface; NaN where the platform is pressed with less than kPressed.
+  std::vector<Eigen::Vector3d> centre;                // m
+  std::vector<double> free_moment;                    // N m on the person, about the outward normal
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // out of the surface
 };
 
-// choose: indices of the columns wanted, from all names; negative ones come out empty. Errors
-// besides the choice's and those of numeric_table.h: no column of times, uneven ones.
-Result<TimedColumns> ReadTimedColumns(
-    const std::string& path,
-    const std::function<Result<std::vector<int>>(const std::vector<std::string>&)>& choose);
+// Less than this many newtons say nothing about where the platform is pressed.
+inline constexpr double kPressed = 10.0;
 
-// Checks that a record, "the record of the ground lasts", goes on for as long as a motion of so
-// many seconds that begins at `start_s` of its clock. spare: frames that may be missing at the end.
-struct RecordTimes {
-  const char* lasts;
-  double first_s, last_s, start_s, seconds, fps, spare;
-};
-MaybeError CheckLasts(const RecordTimes& times, const std::string& file, int line);
-
-// Values at even times: cubic through the four nearest samples (Lagrange; of fewer, through all).
-// at: in samples, from 0.
-Eigen::Vector3d ValueBetween(const std::vector<Eigen::Vector3d>& track, double at);
+// platform: from 0. unit: of the file's lengths; moments count in N mm where the channel's unit
+// does not say (Nm, Nmm) and the lengths are mm. Errors: no such platform, corners that span no
+// surface.
+Result<PlatformRecord> EvaluatePlatform(const C3dFile& file, int platform, LengthUnit unit);
 
 }  // namespace pushid

@@ -1,16 +1,50 @@
-// datasets: the joints of the pendulum and the roles of a body, by name.
-#include "datasets/manifest/joint_choice.h"
+// datasets: the joints of the pendulum and the roles of a body, by name; mapping files, and what
+// they share with manifests.
+#include "datasets/manifest/joint_mapping.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
+#include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/recording.h"
 
 namespace pushid {
 namespace {
+
+// Whether a skeleton has the 22 joints of the FZJ push recordings (those of
+// models/restoration/body.h) in their order, by its parents.
+bool IsFzjSkeleton(const BvhSkeleton& skeleton) {
+  return std::equal(kBodyParents.begin(), kBodyParents.end(), skeleton.joints.begin(),
+                    skeleton.joints.end(),
+                    [](int parent, const BvhJoint& joint) { return joint.parent == parent; });
+}
+
+// "mixamorig:Left_Foot" without what stands before a colon, in small letters and digits alone:
+// "leftfoot"; and what stands before the colon.
+std::string SimplifiedName(const std::string& name) {
+  std::string simple;
+  const std::size_t prefix = name.rfind(':');
+  for (char c : prefix == std::string::npos ? name : name.substr(prefix + 1)) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) simple += c;
+  }
+  return simple;
+}
+
+std::string PrefixOf(const std::string& name) {
+  const std::size_t colon = name.rfind(':');
+  return colon == std::string::npos ? "" : name.substr(0, colon);
+}
+
+// "left" and "ankle": "leftankle", "lankle", "ankleleft", "anklel".
+std::vector<std::string> NamesOnSide(const std::string& side, const std::string& part) {
+  const std::string letter = side.substr(0, 1);
+  return {side + part, letter + part, part + side, part + letter};
+}
 
 // The joints of a skeleton or the points of another file, as a choice sees them.
 struct Source {
@@ -296,16 +330,6 @@ int OnLeft(int role) {
   return role + (role < kRightHip ? kLeftShoulder - kRightShoulder : kLeftHip - kRightHip);
 }
 
-std::vector<std::string> Split(std::string_view text, char at) {
-  std::vector<std::string> parts;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find(at), text.size());
-    parts.emplace_back(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return parts;
-}
-
 class RoleFinder {
  public:
   // Joints without `prefix` ("Anna:") are ignored: they may be another person's.
@@ -331,9 +355,9 @@ class RoleFinder {
 
   // The joints of "asi|asis" on a side, or of a word alone.
   std::vector<int> Find(const std::string& side, const std::string& words) const {
-    for (const std::string& set : Split(words, '|')) {
+    for (const std::string& set : SplitList(words, '|')) {
       std::vector<int> found;
-      const std::vector<std::string> parts = Split(set, '+');
+      const std::vector<std::string> parts = SplitList(set, '+');
       for (const std::string& part : parts) {
         const int joint = FindPart(side, part);
         if (joint >= 0) found.push_back(joint);
@@ -346,13 +370,8 @@ class RoleFinder {
  private:
   // -1 where there is none, or more than one.
   int FindPart(const std::string& side, const std::string& part) const {
-    std::vector<std::string> spellings;
-    if (side.empty()) {
-      spellings.push_back(part);
-    } else {
-      spellings = NamesOnSide(side, part);
-    }
-    for (const std::string& spelling : spellings) {
+    for (const std::string& spelling :
+         side.empty() ? std::vector<std::string>{part} : NamesOnSide(side, part)) {
       const auto first = std::find(simplified_.begin(), simplified_.end(), spelling);
       if (first == simplified_.end()) continue;
       if (std::find(first + 1, simplified_.end(), spelling) != simplified_.end()) continue;
@@ -363,7 +382,7 @@ class RoleFinder {
 
   void Fill(int role, const std::string& side, const std::string& words, BodyRoles* roles) const {
     if (roles->Has(role)) return;
-    for (const std::string& word : Split(words, '|')) {
+    for (const std::string& word : SplitList(words, '|')) {
       const std::vector<int> found = Find(side, word);
       // A mean leaves its joints to others: a hip between the hip joints.
       const bool free = found.size() > 1 || std::find(roles->joints.begin(), roles->joints.end(),
@@ -433,32 +452,6 @@ std::string CommonPrefix(const std::vector<std::string>& names, const PendulumJo
 
 }  // namespace
 
-bool IsFzjSkeleton(const BvhSkeleton& skeleton) {
-  return std::equal(kBodyParents.begin(), kBodyParents.end(), skeleton.joints.begin(),
-                    skeleton.joints.end(),
-                    [](int parent, const BvhJoint& joint) { return joint.parent == parent; });
-}
-
-std::string SimplifiedName(const std::string& name) {
-  std::string simple;
-  const std::size_t prefix = name.rfind(':');
-  for (char c : prefix == std::string::npos ? name : name.substr(prefix + 1)) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) simple += c;
-  }
-  return simple;
-}
-
-std::string PrefixOf(const std::string& name) {
-  const std::size_t colon = name.rfind(':');
-  return colon == std::string::npos ? "" : name.substr(0, colon);
-}
-
-std::vector<std::string> NamesOnSide(const std::string& side, const std::string& part) {
-  const std::string letter = side.substr(0, 1);
-  return {side + part, letter + part, part + side, part + letter};
-}
-
 Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSkeleton& skeleton,
                                             const JointMapping& mapping) {
   return ChooseFrom({path, skeleton.Names(), &skeleton}, mapping);
@@ -468,12 +461,6 @@ Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
                                             const std::vector<std::string>& names,
                                             const JointMapping& mapping) {
   return ChooseFrom({path, names}, mapping);
-}
-
-Result<std::vector<int>> JointsMeant(const std::string& path, const std::vector<std::string>& names,
-                                     const BvhSkeleton* skeleton, const std::string& key,
-                                     const JointReference& reference) {
-  return Meant({path, names, skeleton}, key, reference);
 }
 
 JointMapping Overlaid(const JointMapping& first, const JointMapping& second) {
@@ -492,7 +479,7 @@ Result<BodyRoles> ChooseRoles(const std::string& path, const std::vector<std::st
   for (int role = 0; role < kBodyJoints; ++role) {
     const std::optional<JointReference> reference = mapping.Of(role);
     if (!reference) continue;
-    Result<std::vector<int>> meant = JointsMeant(path, names, skeleton, RoleName(role), *reference);
+    Result<std::vector<int>> meant = Meant({path, names, skeleton}, RoleName(role), *reference);
     if (!meant.ok()) return meant.error();
     given.joints[role] = std::move(meant.value());
   }
@@ -532,6 +519,161 @@ std::string RolesText(const Result<BodyRoles>& roles) {
   if (!unfilled.empty()) return "none: not recognised: " + RoleList(unfilled);
   const std::vector<int> filled = FilledRoles(roles.value());
   return filled.empty() ? "all roles" : "all roles, filled from neighbours: " + RoleList(filled);
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void ReadColumns(JsonFields* fields, ColumnMapping* mapping) {
+  if (!fields->Has("columns")) return;
+  const Json& columns = fields->At("columns");
+  if (!columns.is_object()) {
+    fields->Fail("columns", "must be an object of \"point\": [\"x\", \"y\", \"z\"]");
+    return;
+  }
+  for (const auto& [name, item] : columns.items()) {
+    bool names = item.is_array() && item.size() == 3;
+    for (std::size_t i = 0; names && i < 3; ++i) names = item[i].is_string();
+    if (!names || name.empty()) {
+      fields->Fail("columns",
+                   "of " + Quoted(name) + " must be three column names, not " + Shown(item));
+      return;
+    }
+    mapping->columns.push_back(
+        {name, item[0].get<std::string>(), item[1].get<std::string>(), item[2].get<std::string>()});
+  }
+}
+
+constexpr int kHighestIndex = 1 << 30;
+constexpr char kBase[] = "base";  // kBaseRole
+
+std::optional<JointReference> ReadOne(const Json& value) {
+  JointReference joint;
+  if (value.is_string() && !value.get<std::string>().empty()) {
+    joint.name = value.get<std::string>();
+    return joint;
+  }
+  if (value.is_number_integer() && value.get<double>() >= 0 &&
+      value.get<double>() < kHighestIndex) {
+    joint.index = value.get<int>();
+    return joint;
+  }
+  return std::nullopt;
+}
+
+std::optional<JointReference> ReadJoint(JsonFields* fields, const char* key) {
+  if (!fields->Has(key)) return std::nullopt;
+  const Json& value = fields->At(key);
+  std::optional<JointReference> joint = ReadOne(value);
+  if (value.is_array() && !value.empty()) {
+    joint.emplace();
+    for (const Json& item : value) {
+      const std::optional<JointReference> one = ReadOne(item);
+      if (!one) {
+        joint.reset();
+        break;
+      }
+      joint->mean_of.push_back(*one);
+    }
+  }
+  if (!joint) {
+    fields->Fail(
+        key, "must be a joint's name or its index from 0, or a list of those, not " + Shown(value));
+  }
+  return joint;
+}
+
+}  // namespace
+
+Result<ColumnMapping> ReadColumnMapping(const std::string& path) {
+  const Result<JsonDocument> document = ReadJsonDocument(path);
+  if (!document.ok()) return document.error();
+  JsonFields fields(document.value(), document.value().content, "", "mapping");
+  ColumnMapping mapping;
+  if (fields.error()) return *fields.error();
+  ReadColumns(&fields, &mapping);
+  mapping.joints = ReadJointMapping(document.value(), &fields);
+  mapping.time_column = fields.OptionalText("time", "");
+  if (fields.Has("frame_rate")) {
+    mapping.frame_rate = fields.Number("frame_rate", "the frames per second");
+    const std::string problem = FrameRateProblem(mapping.frame_rate);
+    if (!problem.empty()) fields.Fail("frame_rate", problem);
+  }
+  mapping.length_unit = ReadLengthUnit(&fields, "length_unit");
+  mapping.length_scale = ReadLengthScale(&fields);
+  mapping.up = fields.OptionalText("up", "");
+  mapping.forward = fields.OptionalText("forward", "");
+  if (mapping.up.empty() != mapping.forward.empty()) {
+    fields.Fail(mapping.up.empty() ? "forward" : "up", "needs the other one: give up and forward");
+  }
+  if (!mapping.up.empty() && !fields.error()) {
+    const Result<Eigen::Matrix3d> axes = AxesRotation(mapping.up, mapping.forward);
+    if (!axes.ok()) fields.Fail("up", "and forward: " + axes.error().message);
+  }
+  fields.OnlyAsked();
+  if (fields.error()) return *fields.error();
+  return mapping;
+}
+
+std::optional<JointReference> JointMapping::Of(int role) const {
+  if (role == kBodyHip) return hip;
+  if (role == kLeftAnkle && left_ankle) return left_ankle;
+  if (role == kRightAnkle && right_ankle) return right_ankle;
+  const bool of_ankle = role == kLeftAnkle || role == kRightAnkle;
+  const auto found = others.find(of_ankle ? kBaseRole : role);
+  return found == others.end() ? std::nullopt : std::optional(found->second);
+}
+
+void JointMapping::Set(int role, const JointReference& joint) {
+  if (role == kBodyHip) {
+    hip = joint;
+  } else if (role == kLeftAnkle) {
+    left_ankle = joint;
+  } else if (role == kRightAnkle) {
+    right_ankle = joint;
+  } else {
+    others[role] = joint;
+  }
+}
+
+JointMapping ReadJointMapping(const JsonDocument& document, JsonFields* fields) {
+  JointMapping mapping;
+  if (!fields->Has("joints")) return mapping;
+  JsonFields joints(document, fields->At("joints"), fields->Pointer("joints"),
+                    fields->label() + ", joints");
+  for (int role = 0; role < kBodyJoints; ++role) {
+    const std::optional<JointReference> joint = ReadJoint(&joints, RoleName(role).c_str());
+    if (joint) mapping.Set(role, *joint);
+  }
+  // A robot's log has its base of support, and no ankles.
+  if (const std::optional<JointReference> base = ReadJoint(&joints, kBase)) {
+    if (mapping.left_ankle || mapping.right_ankle) {
+      joints.Fail(kBase, "is given together with ankles; it stands for both of them");
+    }
+    mapping.others[kBaseRole] = *base;
+  }
+  joints.OnlyAsked();
+  fields->Add(joints);
+  return mapping;
+}
+
+std::optional<double> ReadLengthScale(JsonFields* fields) {
+  constexpr const char* kKey = "length_scale";
+  if (!fields->Has(kKey)) return std::nullopt;
+  const double metres = fields->Number(kKey, "the metres in one of the file's lengths");
+  if (fields->failed()) return std::nullopt;
+  const std::string problem = LengthScaleProblem(metres);
+  if (!problem.empty()) fields->Fail(kKey, problem);
+  if (fields->Has("length_unit")) {
+    fields->Fail(kKey, "is given together with length_unit; give one of them");
+  }
+  return metres;
+}
+
+std::optional<LengthUnit> ReadLengthUnit(JsonFields* fields, const char* key) {
+  if (!fields->Has(key)) return std::nullopt;
+  return fields->Choice(key, LengthUnit::kMillimetre);
 }
 
 }  // namespace pushid

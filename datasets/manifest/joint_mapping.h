@@ -1,13 +1,15 @@
-// datasets: which joints or markers of a file the pendulum is read from, and which play the roles
-// of a body.
+// datasets: what the joints, markers and columns of a file mean: which of them the pendulum is read
+// from, and which play the roles of a body; and mapping files.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "datasets/files/error.h"
 #include "datasets/formats/bvh.h"
-#include "datasets/manifest/body_roles.h"
+#include "datasets/formats/point_motion.h"
+#include "datasets/formats/units.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/manifest/recording.h"
 
@@ -63,38 +65,57 @@ Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
                                             const std::vector<std::string>& names,
                                             const JointMapping& mapping);
 
-// The joint or point that one reference means, or all whose mean it is; skeleton: null for points.
-// `key` is what it stands under, for messages.
-Result<std::vector<int>> JointsMeant(const std::string& path, const std::vector<std::string>& names,
-                                     const BvhSkeleton* skeleton, const std::string& key,
-                                     const JointReference& reference);
-
-// "mixamorig:Left_Foot" without what stands before a colon, in small letters and digits alone:
-// "leftfoot"; and what stands before the colon.
-std::string SimplifiedName(const std::string& name);
-std::string PrefixOf(const std::string& name);
-
-// "left" and "ankle": "leftankle", "lankle", "ankleleft", "anklel".
-std::vector<std::string> NamesOnSide(const std::string& side, const std::string& part);
-
-// Whether a skeleton has the 22 joints of the FZJ push recordings (those of
-// models/restoration/body.h) in their order, by its parents.
-bool IsFzjSkeleton(const BvhSkeleton& skeleton);
-
 // `first` where it names a joint, otherwise `second`.
 JointMapping Overlaid(const JointMapping& first, const JointMapping& second);
 
 // The joints of the roles: hip, ankles and toes are those of the pendulum and its feet; for the
-// rest the words of the naming that knows most of the file's names (joint_choice.cc has the table),
-// and for the spine of a skeleton the joints between hip and shoulders. A skeleton of the FZJ push
-// recordings plays the roles as it stands. What `mapping` names wins; a name there that the file
-// has not is the only Error: roles that nothing plays stay empty. skeleton: null for points,
-// `names` are theirs.
+// rest the words of the naming that knows most of the file's names (joint_mapping.cc has the
+// table), and for the spine of a skeleton the joints between hip and shoulders. A skeleton of the
+// FZJ push recordings plays the roles as it stands. What `mapping` names wins; a name there that
+// the file has not is the only Error: roles that nothing plays stay empty. skeleton: null for
+// points, `names` are theirs.
 Result<BodyRoles> ChooseRoles(const std::string& path, const std::vector<std::string>& names,
                               const BvhSkeleton* skeleton, const PendulumJoints& pendulum,
                               const JointMapping& mapping);
 
 // "all roles", "all roles, filled from neighbours: ...", or "none: ..." and why, for people.
 std::string RolesText(const Result<BodyRoles>& roles);
+
+struct JsonDocument;
+class JsonFields;
+
+// A mapping file, JSON: what a program's files mean, said once for all recordings made with it.
+//
+//   {"columns": {"waist": ["wx", "wy", "wz"], "foot_l": ["lx", "ly", "lz"], ...},
+//    "joints": {"hip": "waist", "left_ankle": "foot_l", "right_ankle": "foot_r"},
+//    "time": "clock", "frame_rate": 100, "length_unit": "cm", "up": "y", "forward": "z"}
+//
+// Every key is optional. What the manifest says itself wins.
+struct ColumnMapping {
+  std::vector<PointColumns> columns;
+  JointMapping joints;
+  std::string time_column;
+  double frame_rate = 0.0;  // frames per second; 0: not said
+  std::optional<LengthUnit> length_unit;
+  std::optional<double> length_scale;  // m, instead of a unit
+  std::string up, forward;             // empty: not said
+};
+
+// Errors name line and key; keys that are not known are Errors too, since they would do nothing.
+Result<ColumnMapping> ReadColumnMapping(const std::string& path);
+
+// Joints and units, which manifests and mapping files write alike.
+
+// "joints": {"hip": "Hips" or 0 or ["LASI", "RASI"], "left_ankle": ..., "left_knee": ...}: any role
+// of recording.h, all optional. "base", a robot's base of support, stands for both ankles.
+inline constexpr int kBaseRole = -1;  // its key in JointMapping::others
+JointMapping ReadJointMapping(const JsonDocument& document, JsonFields* fields);
+
+// "mm", "cm" or "m"; nullopt when the key is not there.
+std::optional<LengthUnit> ReadLengthUnit(JsonFields* fields, const char* key);
+
+// "length_scale", the metres in one of the file's lengths; nullopt when the key is not there.
+// Beside "length_unit" it is a mistake.
+std::optional<double> ReadLengthScale(JsonFields* fields);
 
 }  // namespace pushid

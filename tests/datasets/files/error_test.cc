@@ -1,7 +1,7 @@
 // Warnings about many recordings: once, with a count.
-#include "datasets/loading/warning.h"
-
 #include <gtest/gtest.h>
+
+#include "datasets/files/error.h"
 
 namespace pushid {
 namespace {

@@ -1,8 +1,7 @@
 // Roles that nobody plays are filled from their neighbours.
-#include "datasets/manifest/body_roles.h"
-
 #include <gtest/gtest.h>
 
+#include "datasets/manifest/recording.h"
 #include "tests/models/body_samples.h"
 
 namespace pushid {

@@ -1,5 +1,5 @@
 // datasets: roles to poses.
-#include "datasets/manifest/body_roles.h"
+#include "datasets/manifest/recording.h"
 
 #include <Eigen/Geometry>
 
