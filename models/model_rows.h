@@ -23,7 +23,7 @@
 //   recurrent, cell  whether it remembers its hidden units, and cells besides
 //   biased     whether it has LDP's biases, so that a person at rest may feel a force
 //   Kind       its formula (MlpCell in self_network.h) and, where large ones are to be fitted, its
-//              derivatives by hand (ActivateMlp and DeactivateMlp in residuals/packed/)
+//              derivatives by hand (ActivateMlp and DeactivateMlp in residuals/adjoint/)
 // clang-format off
 #define PUSHID_SELF_FORCES(Law, Network) \
   Law(kLinear, "linear", kAx, kDq, 30.0, "cross terms, quadratic") \

@@ -1,10 +1,10 @@
 // residuals: derivatives that are written out: of a person's own force, of the tail and of the
-// equations of motion, for rollouts in lanes (lanes/person_roller.h) and for the adjoint of large
-// networks (adjoint/step_adjoint.h). Everything else is differentiated by jets. These stay because
-// they pay: the self force's take a thirtieth of the time that dual numbers need, the tail's two
-// fifths (tests/benchmarks, Jacobian_OfSelfForce, Jacobian_OfTail); a whole fit of people alone
-// less than half of that of jets (speed.py derivatives), one with gru:32 two fifths. Tests hold
-// them against automatic ones.
+// equations of motion, for rollouts in lanes (lanes/person_lanes_loops.h) and for the adjoint of
+// large networks (adjoint/step_adjoint.h). Everything else is differentiated by jets. These stay
+// because they pay: the self force's take a thirtieth of the time that dual numbers need, the
+// tail's two fifths (tests/benchmarks, Jacobian_OfSelfForce, Jacobian_OfTail); a whole fit of
+// people alone less than half of that of jets (speed.py derivatives), one with gru:32 two fifths.
+// Tests hold them against automatic ones.
 #pragma once
 
 #include "models/dual.h"

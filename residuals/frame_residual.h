@@ -42,7 +42,7 @@ constexpr EnumNames<Likelihood, 3> Names(Likelihood) {
 
 // How a rollout is differentiated.
 enum class DerivativesBy {
-  kAuto,     // the quickest there is: lanes (cost_functions/lane_tables.h) or jets
+  kAuto,     // the quickest there is: lanes (lanes/person_lanes.h) or jets
   kAutodiff  // jets (jets/autodiff_rollout.h) alone
 };
 constexpr EnumNames<DerivativesBy, 2> Names(DerivativesBy) {

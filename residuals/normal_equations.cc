@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "residuals/packed/vector_kernels.h"
+#include "residuals/kernels/vector_kernels.h"
 
 namespace pushid {
 namespace {

@@ -24,11 +24,6 @@ struct PlatePlace {
   const Scene* scene;
   const ModelOptions* options;
   int person = 0, frame = 0;
-
-  // A push that stands for all forces while it lasts hides what the ground did.
-  bool Known() const {
-    return ForcesAt(*scene, options->push, person, frame) == ActiveForces::kAll;
-  }
 };
 
 // What platforms see of a person in all frames of a rollout alike: the body, and where the centre
@@ -49,46 +44,26 @@ struct BodyOnPlates {
   }
 };
 
-// What acts on the ground during a step: the motion of the ground and the pushes.
-template <typename T>
-struct PlateStep {
-  const GroundStep& ground;
-  Vector4<double> measured_push;
-  Vector4<T> push;
-
-  PlateStep(const PlatePlace& place, const ParameterSet<T>& p)
-      : ground(place.scene->ground.StepAt(place.frame)),
-        measured_push(PushForceAt(*place.scene, place.person, place.frame)),
-        push(measured_push.template cast<T>()) {
-    if (place.options->body == BodyModel::kTable) push *= p[kPushGain];
-  }
-};
-
-// now less at rest, less what was measured, in standard deviations.
-template <typename T>
-PlateVector<T> RawPlateResidual(const GroundReactionOf<T>& now, const GroundReactionOf<T>& at_rest,
-                                const PlateFrame& measured, const ResidualSigmas& sigmas) {
-  PlateVector<T> r;
-  for (int i = 0; i < 2; ++i) {
-    r[i] = (now[i] - measured.shear[i]) / sigmas.shear;
-    r[2 + i] = (now[2 + i] - at_rest[2 + i] - measured.centre[i]) / sigmas.centre;
-  }
-  return r;
-}
-
 // next_qd: the velocity one frame on.
 template <typename T>
 PlateVector<T> PlateResidual(const PlatePlace& place, const BodyOnPlates<T>& on_plates,
                              const ParameterSet<T>& p, const PendulumState<T>& state,
                              const Vector4<T>& next_qd, const PlateFrame& measured,
                              const ResidualSigmas& sigmas) {
-  const PlateStep<T> step(place, p);
-  const Vector4<T> a = (next_qd - state.qd) * T(1.0 / place.scene->dt);
-  const PlateVector<T> r =
-      RawPlateResidual<T>(GroundReaction<T>(on_plates.body, state, a, step.ground, step.push),
-                          on_plates.at_rest, measured, sigmas);
-  const double weight = place.Known() ? measured.weight : 0.0;
-  return T(weight) * RobustWeight<T>(r.squaredNorm(), sigmas.robust) * r;
+  const auto& [scene, options, person, frame] = place;
+  Vector4<T> push = PushForceAt(*scene, person, frame).template cast<T>();
+  if (options->body == BodyModel::kTable) push *= p[kPushGain];
+  const Vector4<T> a = (next_qd - state.qd) * T(1.0 / scene->dt);
+  const PlateVector<T> now =
+      GroundReaction<T>(on_plates.body, state, a, scene->ground.StepAt(frame), push);
+  PlateVector<T> r;
+  for (int i = 0; i < 2; ++i) {
+    r[i] = (now[i] - measured.shear[i]) / sigmas.shear;
+    r[2 + i] = (now[2 + i] - on_plates.at_rest[2 + i] - measured.centre[i]) / sigmas.centre;
+  }
+  // A push that stands for all forces while it lasts hides what the ground did.
+  const bool known = ForcesAt(*scene, options->push, person, frame) == ActiveForces::kAll;
+  return T(known ? measured.weight : 0.0) * RobustWeight<T>(r.squaredNorm(), sigmas.robust) * r;
 }
 
 }  // namespace pushid

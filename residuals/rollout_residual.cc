@@ -120,23 +120,6 @@ bool RolloutResiduals(const RolloutProblem& p, double const* const* blocks, doub
   return RolloutResidual::At<double>(p, blocks, residuals).ok;
 }
 
-void SensitivityInputs::HoldWeights() {
-  if (weight_column < 0) return;
-  num_columns = NormalEquations::PaddedSize(weight_column);
-  weight_column = -1;
-}
-
-void ScatterJacobian(const Eigen::Ref<const RowMajorMatrix>& jacobian,
-                     const std::vector<int>& block_sizes, int first_row, int total_rows,
-                     double** jacobians) {
-  int column = 0;
-  for (size_t b = 0; b < block_sizes.size(); column += block_sizes[b++]) {
-    if (jacobians[b] == nullptr) continue;
-    Eigen::Map<RowMajorMatrix> block(jacobians[b], total_rows, block_sizes[b]);
-    block.middleRows(first_row, jacobian.rows()) = jacobian.middleCols(column, block_sizes[b]);
-  }
-}
-
 RowMajorMatrix ActingColumns::Expand(const Eigen::Ref<const RowMajorMatrix>& by_acting) const {
   RowMajorMatrix all(by_acting.rows(), of_column_.size());
   for (Eigen::Index column = 0; column < all.cols(); ++column) {

@@ -133,9 +133,6 @@ struct SensitivityInputs {
   int velocity_column = -1;                 // first of 4 * people columns; negative when not fitted
   const double* network_weights = nullptr;  // all of options.learned, instead of its own
   int weight_column = -1;                   // of the first of them; negative when not fitted
-
-  // Without the columns of weights.
-  void HoldWeights();
 };
 
 // The inputs at the given blocks, by the acting columns of a layout (parameter_map.h).
@@ -183,10 +180,5 @@ class ActingColumns {
   std::vector<int> block_sizes_;
   std::vector<std::pair<int, int>> of_column_;
 };
-
-// Writes `jacobian` (rows x all columns) into the blocks that Ceres asks for.
-void ScatterJacobian(const Eigen::Ref<const RowMajorMatrix>& jacobian,
-                     const std::vector<int>& block_sizes, int first_row, int total_rows,
-                     double** jacobians);
 
 }  // namespace pushid

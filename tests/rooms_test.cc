@@ -28,7 +28,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
 const std::map<std::string, std::vector<std::string>> kFloors = {
     {"models", {"", "restoration", "generators"}},
     {"datasets", {"files", "formats", "manifest", "sensors", "loading", "synthetic", "inspection"}},
-    {"residuals", {"packed", "", "lanes", "jets", "cost_functions", "adjoint"}},
+    {"residuals", {"kernels", "", "lanes", "jets", "cost_functions", "adjoint"}},
     {"ident",
      {"figures",     "parameters",  "problem",    "solver",    "large_networks", "uncertainty",
       "diagnostics", "model",       "observed",   "fit",       "prediction",     "validation",

@@ -11,7 +11,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/model/model_rollout.h"
 #include "ident/solver/solver.h"
-#include "residuals/cost_functions/path_residual.h"
+#include "residuals/cost_functions/likelihood_residual.h"
 
 namespace pushid {
 namespace {

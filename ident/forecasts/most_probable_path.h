@@ -1,9 +1,9 @@
 // ident: most probable paths of a person under the process noise of a model.
 //
-// Between two ends: the path of least action (residuals/cost_functions/path_residual.h), with its
-// nodes as parameter blocks of one sparse least-squares problem. Of several ends the most probable
-// one has the least action (Fig. 5 of Lyu et al., ACM MM 2021, by minimization instead of by
-// drawing).
+// Between two ends: the path of least action (residuals/cost_functions/likelihood_residual.h), with
+// its nodes as parameter blocks of one sparse least-squares problem. Of several ends the most
+// probable one has the least action (Fig. 5 of Lyu et al., ACM MM 2021, by minimization instead of
+// by drawing).
 #pragma once
 
 #include <string>

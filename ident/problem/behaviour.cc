@@ -16,7 +16,7 @@
 #include "models/modal_stability.h"
 #include "models/reaction_delay.h"
 #include "models/self_terms.h"
-#include "residuals/cost_functions/scene_rollouts.h"
+#include "residuals/cost_functions/rest_residual.h"
 
 namespace pushid {
 namespace {

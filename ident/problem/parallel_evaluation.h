@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-#include "residuals/cost_functions/lane_tables.h"
+#include "residuals/cost_functions/condensed_rollout.h"
 
 namespace pushid {
 

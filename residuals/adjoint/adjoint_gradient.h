@@ -7,11 +7,11 @@
 // goes back by
 //   f = dt M^-1 g                          d(cost)/dF
 //   L_q <- L_q + J_q' f,  L_qd <- g + J_qd' f,   J = dF/ds - d(M a + C + G)/ds at fixed a
-// and d(cost)/dp += (dF/dp)' f (step_adjoint.h); the network's part of dF/ds: packed_network.h.
+// and d(cost)/dp += (dF/dp)' f (step_adjoint.h); the network's part of dF/ds: batched_networks.h.
 // Where the rod moves, l' = l + dt v(s, F_self, l), its adjoint goes back through v
-// (packed_layers.h) to s, F_self and p:
+// (batched_networks.h) to s, F_self and p:
 //   L_l <- L_l + dt v_l L_l - (d(M a + C + G)/dl)' f
-// What people do to each other: adjoint_batch.cc.
+// What people do to each other: adjoint_gradient.cc.
 // One gradient costs about as much as three rollouts, whatever the number of weights.
 //
 //   auto gradient = AdjointGradient::Create({{&recording, weight}}, options, map, sigmas);
@@ -26,7 +26,6 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "residuals/packed/vector_kernels.h"
 #include "residuals/rollout_residual.h"
 
 namespace pushid {
@@ -55,8 +54,7 @@ class AdjointGradient {
   // where options have no network. map.num_weights: that of the network's.
   static Result<AdjointGradient> Create(const std::vector<AdjointRecording>& recordings,
                                         const ModelOptions& options, const ParameterMap& map,
-                                        const ResidualSigmas& sigmas,
-                                        const VectorKernels& kernels = BestVectorKernels());
+                                        const ResidualSigmas& sigmas);
 
   AdjointGradient(AdjointGradient&&) noexcept;
   ~AdjointGradient();

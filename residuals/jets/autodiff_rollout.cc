@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "residuals/packed/vector_kernels.h"
+#include "residuals/kernels/vector_kernels.h"
 
 namespace pushid {
 namespace {
@@ -20,16 +20,16 @@ void StateColumns::Resize(int num_frames, int num_people, int num_columns) {
   if (storage_.size() < size) storage_.resize(size);
 }
 
-// In the order of the vector kernels, of which there are as many.
 const std::vector<const RolloutJets*>& SupportedRolloutJets() {
   static const std::vector<const RolloutJets*> supported = [] {
-    std::vector<const RolloutJets*> all = {RolloutJets128()};
-    for (const RolloutJets* wider : {RolloutJets256(), RolloutJets512()}) {
-      if (all.size() == SupportedVectorKernels().size()) break;
-      if (wider == nullptr || wider->alignment != alignof(Vector4<double>)) break;
-      all.push_back(wider);
-    }
+#ifdef PUSHID_NATIVE
+    return std::vector<const RolloutJets*>{&RolloutJetsOf<128>()};
+#else
+    std::vector<const RolloutJets*> all = PUSHID_OF_WIDTHS(RolloutJetsOf);
+    all.resize(NumVectorWidths());
+    while (all.back()->alignment != alignof(Vector4<double>)) all.pop_back();
     return all;
+#endif
   }();
   return supported;
 }

@@ -41,7 +41,7 @@ class StateColumns {
 
 // What one width of vectors offers: eight columns of the inputs, from `first` on.
 struct RolloutJets {
-  const char* name;
+  int bits;               // of a vector
   std::size_t alignment;  // of the models' vectors, which must be that of everybody else
   RolloutStatus (*rows)(const RolloutProblem& problem, const SensitivityInputs& inputs, int first,
                         double* residuals, double* rows);
@@ -81,9 +81,14 @@ class AutoDiffRollout : public ceres::CostFunction {
   ActingColumns columns_;
 };
 
-// One file each; null where the compiler has no such instructions, or the build one width.
-const RolloutJets* RolloutJets128();
-const RolloutJets* RolloutJets256();  // AVX2
-const RolloutJets* RolloutJets512();  // AVX-512F and DQ
+// By the bits of a vector, as VectorKernelsOf; a build for one processor has the first alone.
+template <int kBits>
+const RolloutJets& RolloutJetsOf();
+template <>
+const RolloutJets& RolloutJetsOf<128>();
+template <>
+const RolloutJets& RolloutJetsOf<256>();
+template <>
+const RolloutJets& RolloutJetsOf<512>();
 
 }  // namespace pushid

@@ -95,9 +95,13 @@ StateStep* MakeStep(const Scene& scene, const ModelOptions& options,
   return new DualStep<VectorJet>(scene, options, parameters);
 }
 
-constexpr RolloutJets OfWidth(const char* name) {
-  return {name, alignof(Vector4<double>), PassOfRows, PassOfStates, MakeStep};
+}  // namespace
+
+template <>
+const RolloutJets& RolloutJetsOf<PUSHID_WIDTH>() {
+  static constexpr RolloutJets jets = {PUSHID_WIDTH, alignof(Vector4<double>), PassOfRows,
+                                       PassOfStates, MakeStep};
+  return jets;
 }
 
-}  // namespace
 }  // namespace pushid

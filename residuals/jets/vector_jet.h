@@ -2,7 +2,8 @@
 // vectors of the processor, a scalar of the models' templates. A file that is compiled for wider
 // vectors says, before it includes this,
 //   PUSHID_VECTOR_DOUBLES      doubles in a vector; else 2, which every processor has
-// A type without linkage, so that what is made of it stays in that file too (vector_math.h).
+// A type without linkage, so that what is made of it stays in that file too
+// (tests/residuals/shared_code.sh).
 //
 // It allocates nothing, and every operation is the same sum of products, whatever the width of the
 // vectors: without contraction (-ffp-contract=off) the bits are equal on all processors.

@@ -1,16 +1,19 @@
 // residuals: rollouts of people alone, of sliding feet, side by side in the vectors of a processor:
 // their normal equations, once for each width of vectors, and the choice of the widest at run time
-// as in packed/vector_kernels.h.
+// as in kernels/vector_kernels.h.
 //
 // The equations are those of the models' templates (ipm.h, self_terms.h, push.h) and of
 // frame_residual.h, whose scalar is a lane each of a vector. All arrays of numbers end in the lane:
 // [..][lane].
 #pragma once
 
-#include <cstddef>
+#include <vector>
 
+#include "models/options.h"
+#include "models/scene.h"
 #include "models/self_terms.h"
 #include "residuals/frame_residual.h"
+#include "residuals/parameter_map.h"
 
 namespace pushid {
 
@@ -92,7 +95,7 @@ constexpr int LaneStorage(int lanes, int columns, int tails) {
 }
 
 struct PersonLanes {
-  const char* name;
+  int bits;  // of a vector
   int lanes;
   void (*roll)(const LaneInputs& in, LaneSums sums, const LaneOutputs& out);
 };
@@ -103,9 +106,70 @@ const PersonLanes& BestPersonLanes();
 // The narrowest in which so many people have room; the widest where they do not.
 const PersonLanes& PersonLanesFor(int people);
 
-// One file each, compiled for its instructions; null where the compiler has none such.
-const PersonLanes* PersonLanes128();
-const PersonLanes* PersonLanes256();  // AVX2 and FMA
-const PersonLanes* PersonLanes512();  // AVX-512F and DQ
+// By the bits of a vector, as VectorKernelsOf.
+template <int kBits>
+const PersonLanes& PersonLanesOf();
+template <>
+const PersonLanes& PersonLanesOf<128>();
+template <>
+const PersonLanes& PersonLanesOf<256>();
+template <>
+const PersonLanes& PersonLanesOf<512>();
+
+// Whether a scene can be rolled out so: one person, of sliding feet, with no force that remembers
+// or that a user brings.
+bool HasLanes(const Scene& scene, const ModelOptions& options);
+
+// The parameters of people in lanes, and what columns move of them.
+class LaneParameters {
+ public:
+  explicit LaneParameters(int width = 0) { Clear(width); }
+  void Clear(int width);
+  // entries: in ascending order of column, of the same columns and parameters in every lane; none
+  // without derivatives.
+  void Set(int lane, const ParameterSet<double>& values, const std::vector<ColumnEntry>& entries);
+  void In(LaneInputs* in) const;
+
+ private:
+  int width_ = 0;
+  std::vector<double> values_, slopes_;
+  std::vector<LaneEntry> entries_;
+};
+
+class LaneTables {
+ public:
+  // frames, num_tails: the most that one of them has. steps: those that differ, where frames after
+  // are as the last of them.
+  LaneTables(const PersonLanes& lanes, int frames, int num_tails, int steps);
+
+  // Puts a scene into a lane. All lanes share their options but for the tail.
+  void Set(int lane, const Scene& scene, const ModelOptions& options, int frames);
+  void SetMeasured(int lane, int frame, const Vector3<double>& hip,
+                   const PendulumState<double>& state, double weight);
+
+  // All but parameters, columns and sigmas.
+  LaneInputs Inputs() const;
+  const std::vector<double>& constants() const { return constants_; }
+  int width() const { return lanes_->lanes; }
+  // All of `out` but its storage is the caller's.
+  void Roll(const LaneInputs& in, LaneSums sums, LaneOutputs out) const;
+
+ private:
+  void SetSteps(int lane, const Scene& scene, const ModelOptions& options, int frames);
+  void SetTails(int lane, const Scene& scene, const ModelOptions& options);
+  double* Step(int lane, int frame) { return steps_.data() + frame * kLaneFields * width() + lane; }
+  double& Constant(int id, int lane) { return constants_[id * width() + lane]; }
+
+  const PersonLanes* lanes_;
+  int frames_, num_tails_, num_steps_;
+  FrictionKind friction_ = FrictionKind::kIsotropic;
+  bool cart_derivative_ = false;
+  std::vector<double> constants_, steps_, tails_;
+};
+
+// Steps that differ where nothing is measured: until all pushes have ended.
+int NumSteps(const Scene& scene, int frames);
+// Pushes on the person with a tail.
+int NumTails(const Scene& scene, const ModelOptions& options);
 
 }  // namespace pushid

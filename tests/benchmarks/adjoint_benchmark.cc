@@ -1,5 +1,5 @@
 // What one adjoint gradient over the 32 recordings of single people costs: cost alone and with its
-// gradient, by network and by the width of vectors (residuals/packed/vector_kernels.h).
+// gradient, by network.
 //
 // lstm:256:32 is the size of LDP's own network (there the weights are 297 664), whose released
 // PyTorch code needs 18.6 s for one epoch, forward and backward, over the same 32 recordings on one
@@ -40,14 +40,9 @@ std::vector<double> SomeWeights(const LearnedTerms& network) {
   return weights;
 }
 
-// Arguments: the network, the vectors, and whether with the gradient.
+// Arguments: the network, and whether with the gradient.
 void Adjoint(benchmark::State& state) {
   const LearnedTerms& network = Network(state.range(0));
-  if (state.range(1) >= static_cast<int>(SupportedVectorKernels().size())) {
-    state.SkipWithError("this processor has no such vectors");
-    return;
-  }
-  const VectorKernels& kernels = *SupportedVectorKernels()[state.range(1)];
   ModelOptions options;
   options.learned = std::make_shared<const LearnedTerms>(network);
   ParameterMap map;
@@ -64,26 +59,23 @@ void Adjoint(benchmark::State& state) {
     recordings.push_back({&recording});
     steps += recording.num_frames() - 1;
   }
-  auto adjoint = AdjointGradient::Create(recordings, options, map, {}, kernels).value();
+  auto adjoint = AdjointGradient::Create(recordings, options, map, {}).value();
   const std::vector<double> weights = SomeWeights(network);
   std::vector<double> by_shared(shared.size()), by_weight(weights.size());
   for (auto _ : state) {
-    const bool all = state.range(2) != 0;
+    const bool all = state.range(1) != 0;
     const AdjointCost cost =
         adjoint.Evaluate(shared.data(), weights.data(), all ? by_shared.data() : nullptr,
                          all ? by_weight.data() : nullptr);
     if (!cost.ok()) state.SkipWithError("a rollout fails");
     benchmark::ClobberMemory();
   }
-  state.SetLabel(LearnedName(network) + ", " + std::to_string(network.num_weights()) +
-                 " weights, " + kernels.name +
-                 (state.range(2) != 0 ? ", gradient, " : ", cost alone, ") +
+  state.SetLabel(LearnedName(network) + ", " + std::to_string(network.num_weights()) + " weights" +
+                 (state.range(1) != 0 ? ", gradient, " : ", cost alone, ") +
                  std::to_string(recordings.size()) + " " + SinglePeople().origin + " recordings, " +
                  std::to_string(steps) + " person-steps");
 }
-BENCHMARK(Adjoint)
-    ->Unit(benchmark::kMillisecond)
-    ->ArgsProduct({{0, 1, 2, 3, 4, 5}, {0, 1, 2}, {0, 1}});
+BENCHMARK(Adjoint)->Unit(benchmark::kMillisecond)->ArgsProduct({{0, 1, 2, 3, 4, 5}, {0, 1}});
 
 // A training as it is used. The label has the cost of its first and its last pass. Arguments: the
 // network, and ten times the prior's standard deviation (0: none).

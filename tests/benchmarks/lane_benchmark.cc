@@ -2,7 +2,7 @@
 // side at every width of vectors, and how near that is to what the processor can do.
 //
 // The limit: sums and products, as one person's loops count them, at the rate that this core
-// reaches in products of small matrices whose sums stay in registers (packed/vector_kernels.h).
+// reaches in products of small matrices (kernels/vector_kernels.h).
 // Quotients, roots, sines and exponentials come on top.
 #include <benchmark/benchmark.h>
 
@@ -14,10 +14,11 @@
 
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
-#include "residuals/cost_functions/lane_tables.h"
-#include "residuals/packed/vector_kernels.h"
+#include "residuals/cost_functions/condensed_rollout.h"
+#include "residuals/kernels/vector_kernels.h"
 #include "tests/benchmarks/benchmark_recordings.h"
 
+#define PUSHID_WIDTH 64
 #define PUSHID_VECTOR_DOUBLES 1
 #define PUSHID_LANE_SCALAR "tests/benchmarks/counted_scalar.h"
 #include "residuals/lanes/person_lanes_loops.h"
@@ -27,17 +28,17 @@ namespace {
 
 // Sums and products a second.
 double PeakRate(const VectorKernels& kernels) {
-  constexpr int kDepth = 256, kTimes = 20000;
-  std::vector<double> left(kDepth * kernels.tile_rows, 1e-3);
-  std::vector<double> right(kDepth * kernels.tile_columns, 1e-3);
-  std::vector<double> sums(kernels.tile_rows * kernels.tile_columns, 0.0);
+  constexpr int kSize = 96, kTimes = 2000;
+  const std::vector<double> factor(kSize * kSize, 1e-3);
+  std::vector<double> sums(kSize * kSize, 0.0);
+  const MatrixAt side = {factor.data(), kSize, kSize, kSize, false};
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < kTimes; ++i) {
-    kernels.add_tile(kDepth, left.data(), right.data(), sums.data(), kernels.tile_rows);
+    kernels.add_product(side, side, sums.data(), kSize);
     benchmark::DoNotOptimize(sums.data());
   }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  return 2.0 * kDepth * kernels.tile_rows * kernels.tile_columns * kTimes / seconds.count();
+  return 2.0 * kSize * kSize * kSize * kTimes / seconds.count();
 }
 
 // Arguments: the preset (0: tail, 1: ldp), the width.
@@ -75,8 +76,7 @@ void SumsSideBySide(benchmark::State& state) {
     }
   };
   counted = {};
-  static constexpr PersonLanes kCounted = {"counted", kWidth, RollLanes};
-  evaluate(groups(kCounted), 1);
+  evaluate(groups(PersonLanesOf<PUSHID_WIDTH>()), 1);
   const double operations = static_cast<double>(counted.sums_and_products);
   const PersonLanes& lanes = *SupportedPersonLanes()[state.range(1)];
   const double peak = PeakRate(*SupportedVectorKernels()[state.range(1)]);
@@ -91,9 +91,9 @@ void SumsSideBySide(benchmark::State& state) {
   state.counters["peak"] = peak;
   state.counters["rate"] =
       benchmark::Counter(operations, benchmark::Counter::kIsIterationInvariantRate);
-  state.SetLabel(std::string(lanes.name) + ", " + std::to_string(fit.map().num_shared()) +
-                 " columns, " + std::to_string(problems.size()) + " " + people.origin +
-                 " recordings");
+  state.SetLabel(std::to_string(lanes.bits) + "-bit vectors, " +
+                 std::to_string(fit.map().num_shared()) + " columns, " +
+                 std::to_string(problems.size()) + " " + people.origin + " recordings");
 }
 void CostsSideBySide(benchmark::State& state) { SumsSideBySide<LaneSums::kSquares>(state); }
 void EquationsSideBySide(benchmark::State& state) { SumsSideBySide<LaneSums::kPlain>(state); }

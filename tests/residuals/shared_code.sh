@@ -9,7 +9,8 @@ if [ -z "$objects" ]; then
   exit 1
 fi
 for object in $objects; do
-  weak=$(nm --defined-only "$object" | awk '$2 ~ /^[WV]$/ {print $3}')
+  # Eigen has a name of its own there, where it has vectors.
+  weak=$(nm --defined-only "$object" | awk '$2 ~ /^[WV]$/ && $3 !~ /8Eigen(256|512)/ {print $3}')
   shared=$(objdump -d --no-show-raw-insn "$object" | awk -v weak="$weak" '
     BEGIN { count = split(weak, names, "\n"); for (i = 1; i <= count; ++i) is_weak[names[i]] = 1 }
     /^[0-9a-f]+ <.*>:$/ { name = $2; gsub(/[<>:]/, "", name) }

@@ -2,7 +2,7 @@
 // vectors and whatever other people are there.
 #include <cmath>
 
-#include "residuals/cost_functions/lane_tables.h"
+#include "residuals/cost_functions/condensed_rollout.h"
 #include "residuals/jets/autodiff_rollout.h"
 #include "tests/residuals/residual_samples.h"
 
@@ -125,7 +125,7 @@ TEST(LaneGroup, SumsUpTheRowsOfEveryRecording) {
   for (const LaneRegime& regime : kRegimes) {
     const Crowd crowd(regime);
     for (const PersonLanes* lanes : SupportedPersonLanes()) {
-      SCOPED_TRACE(lanes->name);
+      SCOPED_TRACE(lanes->bits);
       for (int first = 0; first < 11; first += lanes->lanes) {
         const int count = std::min(lanes->lanes, 11 - first);
         const auto sums = crowd.Sums(first, count, *lanes, LaneSums::kRobust);
@@ -150,7 +150,7 @@ TEST(LaneGroup, TellsResidualsWithoutTheRobustWeight) {
   for (const LaneRegime& regime : kRegimes) {
     const Crowd crowd(regime);
     for (const PersonLanes* lanes : SupportedPersonLanes()) {
-      SCOPED_TRACE(lanes->name);
+      SCOPED_TRACE(lanes->bits);
       const int count = lanes->lanes;
       const auto told = crowd.Sums(0, count, *lanes, LaneSums::kNone);
       for (int k = 0; k < count; ++k) {

@@ -1,8 +1,7 @@
 // Most probable paths: the action of people.
-#include "residuals/cost_functions/path_residual.h"
-
 #include <ceres/dynamic_autodiff_cost_function.h>
 
+#include "residuals/cost_functions/likelihood_residual.h"
 #include "tests/residuals/residual_samples.h"
 
 namespace pushid {

@@ -48,7 +48,7 @@ TEST(Settling, JacobianAgainstNumericDifferentiation) {
   }
 }
 
-// Does nothing, but has no lanes (lane_tables.h).
+// Does nothing, but has no lanes (HasLanes).
 struct NoForce : ForceLaw {
   NoForce() : ForceLaw("none", {}) {}
   Vector4<double> Force(const LawPerson&, const Inputs&, Jacobian* jacobian) const override {

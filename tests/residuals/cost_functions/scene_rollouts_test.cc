@@ -1,6 +1,5 @@
 // Scenes side by side: the path and the derivatives of each are those of its own rollout.
-#include "residuals/cost_functions/scene_rollouts.h"
-
+#include "residuals/cost_functions/rest_residual.h"
 #include "residuals/rollout_residual.h"
 #include "tests/residuals/residual_samples.h"
 

@@ -134,8 +134,8 @@ TEST(RolloutResidual, JetsOfCeresAndOfEveryWidthAgree) {
   ASSERT_TRUE(RowsByJets(*problem, inputs, &widest_residuals, &widest).ok);
   for (const RolloutJets* jets : SupportedRolloutJets()) {
     ASSERT_TRUE(RowsByJets(*problem, inputs, &residuals, &rows, jets).ok);
-    EXPECT_EQ(residuals, widest_residuals) << jets->name;
-    EXPECT_TRUE(rows == widest) << jets->name;
+    EXPECT_EQ(residuals, widest_residuals) << jets->bits;
+    EXPECT_TRUE(rows == widest) << jets->bits;
   }
 }
 

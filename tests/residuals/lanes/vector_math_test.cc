@@ -7,7 +7,7 @@
 #include "datasets/files/random.h"
 
 #define PUSHID_VECTOR_DOUBLES 2
-#include "residuals/packed/vector_math.h"
+#include "residuals/lanes/lane_scalar.h"
 
 namespace pushid {
 namespace {
@@ -48,6 +48,8 @@ TEST(VectorMath, ExponentialsAreExactToAnUlp) {
     EXPECT_LT(LargestError(most, TanhOf, [](double x) { return std::tanh(x); }), 2.5 * kUlp);
   }
   EXPECT_TRUE(std::isnan(ExpOf(Vector{} + NAN)[0]));
+  EXPECT_TRUE(std::isnan(TanhOf(Vector{} + NAN)[0]));
+  EXPECT_EQ(TanhOf(Vector{} - std::numeric_limits<double>::infinity())[0], -1.0);
 }
 
 }  // namespace

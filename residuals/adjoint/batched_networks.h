@@ -1,0 +1,166 @@
+// residuals: learned terms of many people at once, step by step, and back: d(cost)/d(weights) of
+// whole rollouts by the adjoint. Everybody is a column, and all steps of all people stand side by
+// side for one product.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "models/learned_terms.h"
+#include "models/self_network.h"
+
+namespace pushid {
+
+// People side by side, one column each, over as many steps as each of them has.
+//
+// Those who go on longest are the first columns, so that a step has the first `active` of them.
+// What is kept of every step stands side by side in one matrix of total() columns.
+class BatchColumns {
+ public:
+  // steps: by person; never increasing.
+  explicit BatchColumns(const std::vector<int>& steps) {
+    const int longest = steps.empty() ? 0 : steps.front();
+    int active = static_cast<int>(steps.size());
+    for (int step = 0; step < longest; ++step) {
+      while (steps[active - 1] <= step) --active;
+      first_.push_back(first_.back() + active);
+    }
+  }
+
+  int num_steps() const { return static_cast<int>(first_.size()) - 1; }
+  int active(int step) const { return first_[step + 1] - first_[step]; }
+  int total() const { return first_.back(); }
+  // The columns of a step.
+  auto At(Eigen::MatrixXd& of, int step) const { return of.middleCols(first_[step], active(step)); }
+
+ private:
+  std::vector<int> first_ = {0};  // column of each step, and the total
+};
+
+// A self-force network (models/self_network.h). With Z = [x; h] and the rows of all gates and
+// candidates stacked to W,
+//   S = W Z + C k,  activations a(S), memories and outputs by element,
+// and backwards, with D = d(cost)/dS from the adjoints of outputs and memories,
+//   Z^ = W' D,   W^ = sum over steps D Z' = one product over all (people x steps).
+// Z, activations and cells of every step are kept.
+// Of an ldp network, whose gates are all biased, k is 1 and 1, and its mass goes to the embedding.
+// A GRU multiplies U_n h by r: there W has the rows [W_n 0] and [0 U_n] in place of [W_n U_n], a
+// third more work, for one product instead of three.
+class BatchedNetwork {
+ public:
+  using Columns = Eigen::MatrixXd;
+
+  // masses: by column.
+  BatchedNetwork(const NetworkShape& shape, const BatchColumns& columns,
+                 const std::vector<double>& masses);
+
+  // Everybody's memory back to zero. weights: there until the last step back.
+  void Start(const double* weights);
+
+  // inputs: u, one column for each who is active. forces: 4 x active.
+  void Forward(int step, const Columns& inputs, Columns* forces);
+
+  // A person leaves after a step: nothing of it is kept, and there is no memory after it.
+  void Forget(int step, int column);
+
+  // From the last step to the first: the adjoints of a step's forces to those of its inputs.
+  void Backward(int step, const Columns& forces, Columns* inputs);
+
+  // After the last of these: adds d(cost)/d(weights).
+  void AddWeightGradient(double* gradient);
+
+ private:
+  auto At(Columns& of, int step) const { return columns_.At(of, step); }
+  // Rows of the hidden units' k-th activation.
+  auto Part(Columns& of, int step, int k) const {
+    return At(of, step).middleRows(k * shape_.hidden, shape_.hidden).array();
+  }
+  auto MemoryOf(int step) {
+    return At(z_, step).middleRows(shape_.num_features(), shape_.hidden).array();
+  }
+  NetworkWeights<double> Weights() const { return {shape_, weights_}; }
+  // From the sums of a step, in activations_, to the hidden units; and from d(cost)/dh to D in
+  // activations_ and to the carried adjoint's direct part.
+#define PUSHID_NETWORK(id, name, gates, recurrent, cell, biased, Kind) \
+  void Activate##Kind(int step);                                       \
+  void Deactivate##Kind(int step, const Columns& hidden);
+  PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK)
+#undef PUSHID_NETWORK
+  void Activate(int step);
+  void Deactivate(int step, const Columns& hidden);
+
+  NetworkShape shape_;
+  BatchColumns columns_;
+  const double* weights_ = nullptr;  // of the last Start
+  Eigen::VectorXd scale_;            // newtons per output, by column
+  Columns own_, context_;            // k, and what the gates see of it, by column
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> stacked_;  // W
+
+  Columns inputs_, z_, activations_, hidden_, cells_, cell_tanh_;  // of all steps
+  Columns context_sum_, by_context_sum_;                           // C k, and its adjoint
+  Columns rest_;                                                   // mlp: tanh(C k)
+  Columns outputs_, embedded_;                                     // adjoints of O h, of E u
+  Columns hidden_carry_, cell_carry_;                              // adjoints from the next step
+};
+
+// Dense layers, of a learned rod or interaction (models/learned_terms.h).
+//
+// Everybody, or each of two people who touch, is a column of U. Forwards, with H_0 = U,
+//   H_i = tanh(W_i H_(i-1) + b_i), of a law of the rod less tanh(b_i);  Y = O H_last + c
+// and backwards, with D = H^ tanh' from the adjoint H^ of a layer's values (D = Y^ of the last),
+//   H^_below = W' D,   W^ = sum over steps D H_below' = one product over all columns,   b^ = sum D,
+// of a law of the rod b^ = -sum H^ H (H + 2 tanh(b)): tanh' less tanh' at rest, without the
+// difference of near equals. H and D of every step are kept: 16 bytes a unit and column. Of LDP's
+// networks max(0, .) stands for tanh.
+class BatchedLayers {
+ public:
+  using Columns = Eigen::MatrixXd;
+
+  // Y of the first is [dl/dt] over kRodSpeed, of the second what is before gate and mass.
+  explicit BatchedLayers(const RodShape& shape);
+  explicit BatchedLayers(const PairShape& shape);
+
+  // Before the first step; weights: of these layers alone, there until the last step back.
+  void Start(const double* weights);
+
+  // The next step. inputs: u, a column for each, maybe none.
+  void Forward(const Columns& inputs, Columns* outputs);
+
+  // From the last step to the first: the adjoints of a step's outputs to those of its inputs.
+  void Backward(int step, const Columns& outputs, Columns* inputs);
+
+  // After the last step back: adds d(cost)/d(weights).
+  void AddWeightGradient(double* gradient);
+
+ private:
+  // The last of them is [O c].
+  struct Layer {
+    int rows, width, at;         // of W; its first weight
+    bool biased;                 // whether it has a b
+    Eigen::VectorXd rest, bias;  // tanh(b), where it is taken off; b^
+    Columns values, back;        // of all steps: H (Y of the last), D
+
+    int stride() const { return width + (biased ? 1 : 0); }
+  };
+
+  BatchedLayers(int inputs, const std::vector<int>& hidden, int outputs, bool rectified,
+                bool from_rest, bool output_bias);
+  // What a layer sees of all steps.
+  Columns& Below(size_t layer) { return layer == 0 ? inputs_ : layers_[layer - 1].values; }
+  bool IsOutput(size_t layer) const { return layer + 1 == layers_.size(); }
+  auto At(Columns& of, int step) const {
+    return of.middleCols(first_[step], first_[step + 1] - first_[step]);
+  }
+  ConstRows<double> WeightsOf(const Layer& layer) const;
+  Eigen::VectorXd BiasOf(const Layer& layer) const;
+  // Room for all columns of the steps so far.
+  void Grow();
+
+  const bool rectified_, from_rest_;
+  const double* weights_ = nullptr;
+  std::vector<Layer> layers_;
+  std::vector<int> first_ = {0};  // column of each step, and the total
+  Columns inputs_;                // of all steps
+};
+
+}  // namespace pushid
