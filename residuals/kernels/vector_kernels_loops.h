@@ -3,6 +3,8 @@
 // other instructions, hence no inline function of other headers and no external linkage.
 #pragma once
 
+// Small products coefficient by coefficient would round as their operands happen to lie in memory.
+#define EIGEN_GEMM_TO_COEFFBASED_THRESHOLD 1
 #include <Eigen/Core>
 
 #include "residuals/kernels/vector_kernels.h"
@@ -33,6 +35,14 @@ void AddInOrder(const MatrixAt& left, const MatrixAt& right, double* sum, std::p
 
 void AddProduct(const MatrixAt& left, const MatrixAt& right, double* sum, std::ptrdiff_t stride) {
   using Eigen::ColMajor, Eigen::RowMajor;
+  if (left.rows == 1 && right.columns == 1) {  // so would Eigen's dot product
+    const std::ptrdiff_t from = left.by_rows ? 1 : left.stride,
+                         with = right.by_rows ? right.stride : 1;
+    for (std::ptrdiff_t k = 0; k < left.columns; ++k) {
+      *sum += left.values[k * from] * right.values[k * with];
+    }
+    return;
+  }
   const auto add =
       left.by_rows
           ? (right.by_rows ? AddInOrder<RowMajor, RowMajor> : AddInOrder<RowMajor, ColMajor>)
