@@ -7,7 +7,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace pushid;
   static MemoryFile file;
   const CpuLimit limit;
-  const Result<C3dFile> read = ReadC3d(file.Fill(data, size), {size % 2 == 0});
+  const Result<C3dFile> read = ReadC3d(file.Fill(data, size), size % 2 == 0);
   if (!read.ok()) return 0;
   const C3dFile& c3d = read.value();
   Demand(c3d.point_names.size() == c3d.points.size() && c3d.num_frames() >= 1);
