@@ -33,8 +33,8 @@
 namespace pushid {
 
 // The states of people, frame by frame (Eq. 11 of Tanke et al., ICCV 2023, called SDM), at the rate
-// of words and transitions, 60 Hz. They are annotated (datasets/loading/generator_data.h) or follow from
-// the motion as a StateFunction has them.
+// of words and transitions, 60 Hz. They are annotated (datasets/loading/generator_data.h) or follow
+// from the motion as a StateFunction has them.
 
 struct GroupMotion {
   std::vector<BodyMotion> people;

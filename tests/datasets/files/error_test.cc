@@ -1,7 +1,7 @@
 // Warnings about many recordings: once, with a count.
-#include <gtest/gtest.h>
-
 #include "datasets/files/error.h"
+
+#include <gtest/gtest.h>
 
 namespace pushid {
 namespace {

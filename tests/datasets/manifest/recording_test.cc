@@ -1,7 +1,8 @@
 // Roles that nobody plays are filled from their neighbours.
+#include "datasets/manifest/recording.h"
+
 #include <gtest/gtest.h>
 
-#include "datasets/manifest/recording.h"
 #include "tests/models/body_samples.h"
 
 namespace pushid {
