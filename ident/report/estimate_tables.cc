@@ -13,6 +13,7 @@
 #include "ident/problem/linear_loop.h"
 #include "ident/problem/statistics.h"
 #include "ident/report/report_text.h"
+#include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/covariance.h"
 #include "ident/uncertainty/model_verdict.h"
 #include "models/self_terms.h"

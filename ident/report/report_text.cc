@@ -11,6 +11,7 @@
 #include "ident/report/document.h"
 #include "ident/report/fit_sections.h"
 #include "ident/report/parameter_sections.h"
+#include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/model_verdict.h"
 
 namespace pushid {

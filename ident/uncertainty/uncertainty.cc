@@ -10,6 +10,7 @@
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/residual_rows.h"
+#include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/model_verdict.h"
 #include "models/decompositions.h"
 #include "models/enum_names.h"

@@ -11,6 +11,7 @@
 #include "ident/prediction/evaluation.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/residual_rows.h"
+#include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/covariance.h"
 #include "ident/uncertainty/model_verdict.h"
 #include "models/decompositions.h"

@@ -19,7 +19,7 @@ MOST_LINES, MOST_FILES, MOST_FLAGS, MOST_FIT_FLAGS, SLACK = 80000, 370, 160, 45,
 # Feature, goal, bound, and the files of it: the first row that matches a file has it.
 FEATURES = [
     ("contrasts", 560, 555, r"ident/(fit/(covariates|contrast)|uncertainty/contrast|report/contrast)"),
-    ("verdict", 1000, 781, r"ident/uncertainty/model_verdict"),
+    ("verdict", 1000, 781, r"ident/uncertainty/(model_verdict|assumptions)"),
     ("steps and stance", 1749, 1641, r"models/(stance|standing|support)|datasets/loading/foot_steps|ident/(fit/step_probability|prediction/predicted_steps|report/page/standing)"),
     ("laboratory", 1648, 1623, r"models/(ground|reaction_delay|turn)|datasets/(loading/laboratory|manifest/laboratory_keys)|residuals/plate_residual|ident/(parameters/laboratory|fit/laboratory|prediction/laboratory)"),
     ("interaction", 450, 538, r"models/(contact|pair|interaction|ldp_interaction|neighbours)"),

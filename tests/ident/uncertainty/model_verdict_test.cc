@@ -7,6 +7,7 @@
 
 #include "ident/fit/fit.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/uncertainty/assumptions.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

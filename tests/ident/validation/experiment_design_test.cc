@@ -8,6 +8,7 @@
 
 #include "ident/problem/fit_problem.h"
 #include "ident/solver/solver.h"
+#include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/covariance.h"
 #include "ident/uncertainty/model_verdict.h"
 #include "tests/ident/fit_samples.h"
