@@ -6,7 +6,7 @@
 // Sources: Jazwinski, Stochastic Processes and Filtering Theory, 1970 (8.8); as used by CTSM-R and
 // ctsmTMB.
 //
-// Of several people each has a covariance of their own: what people do to each other is taken at
+// Each of several people has a covariance of their own: what people do to each other is taken at
 // the filtered states, whose errors (millimetres) are small against the distances at which contact
 // changes. Rejected: one covariance of all 8 N states, 25 times the work of five people.
 #pragma once

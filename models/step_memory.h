@@ -39,7 +39,7 @@ class StepMemory {
     states_.assign(states, states + scene_->people.size());
     finder_.Update(Parameters(0), states_);
   }
-  // As above, from a path that is known up to this frame.
+  // Updates from a path that is known up to this frame.
   void Update(const RolloutPath<T>& path, int frame) {
     Update(path.Frame(frame));
     perceived_.clear();

@@ -31,7 +31,7 @@ inline constexpr char kShippedPrefix[] = "pushid:";
 
 inline bool IsShipped() { return FLAGS_model.rfind(kShippedPrefix, 0) == 0; }
 
-// That pushid-fit --model_out wrote; empty: none is named.
+// The model's file, as pushid-fit --model_out writes it; empty: none is named.
 inline std::string ModelFile() {
   if (!IsShipped()) return FLAGS_model;
   const std::string name = FLAGS_model.substr(sizeof kShippedPrefix - 1);

@@ -22,7 +22,7 @@ inline MaybeError CheckNew(const std::string& flag, const std::string& file,
               file};
 }
 
-// As above, for a folder of recordings that pushid-simulate writes: --overwrite replaces only its
+// Checks a folder of recordings that pushid-simulate writes: --overwrite replaces only its
 // earlier output, real recordings stay.
 inline MaybeError CheckOutputFolder(const std::string& flag, const std::string& folder) {
   namespace fs = std::filesystem;

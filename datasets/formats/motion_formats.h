@@ -64,7 +64,7 @@ inline std::string Title(MotionFormat format) { return RowOf(format).title; }
 
 // The format by the file's ending: ".c3d" is C3D, ".mot" and ".sto" storage, ...
 std::optional<MotionFormat> MotionFormatOfFile(std::string_view path);
-// The same, and trajectories where a CSV file's header says so.
+// The format by the ending, or trajectories where a CSV file's header says so.
 std::optional<MotionFormat> MotionFormatInFile(const std::string& path);
 
 // ".bvh, .c3d, .trc, .csv, .sto, .mot" and "bvh, c3d, trc, csv, sto", for messages.

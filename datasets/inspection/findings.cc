@@ -260,7 +260,7 @@ constexpr double kStillOn = 0.5, kSlowStart = 0.25;
 // least, as its slopes beside the flat part go on.
 constexpr double kSameValue = 1e-6, kCutOff = 0.1;
 
-// Of the horizontal force, N.
+// Size of the horizontal force, N.
 double Length(const Vector4<double>& row) { return row.head<2>().norm(); }
 
 double Peak(const ScenePush& push) {

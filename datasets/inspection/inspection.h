@@ -70,7 +70,8 @@ Result<Inspection> Inspect(const std::string& path, const ColumnMapping& mapping
 // "file: format", the facts and the warnings, one a line.
 std::string InspectionText(const Inspection& inspection);
 
-// As above, with names and numbers: {"file", "format", "facts", "warnings", "ground", "plates"}.
+// The inspection with names and numbers: {"file", "format", "facts", "warnings", "ground",
+// "plates"}.
 nlohmann::ordered_json InspectionJson(const Inspection& inspection);
 
 }  // namespace pushid

@@ -5,7 +5,7 @@
 //   FOLDER/skeleton.json               joints, parents, offsets_mm, used, duplicates, mirror
 //   FOLDER/train/walking/walking_1.txt  clips to learn from; FOLDER/test/... those kept apart
 //
-// Of a folder without train and test the actions stand in it directly; skeleton.json may stand one
+// A folder without train and test holds the actions themselves; skeleton.json may stand one
 // folder higher. Human3.6M has folders of subjects, FOLDER/S5/walking_1.txt, and needs no
 // skeleton.json: 32 joints, 99 numbers a line. S5 is tested, S11 validates. Joints are particles
 // where they are `used`; `duplicates` share the place of a used one and count in means over all

@@ -54,7 +54,7 @@ Result<std::vector<Recording>> LoadRecordings(const std::string& manifests,
                                               const LoadOptions& options = {},
                                               Warnings* warnings = nullptr);
 
-// As above, from a manifest that was read already; or one recording of it.
+// Recordings of a manifest that was read already; or one recording of it.
 Result<std::vector<Recording>> LoadRecordings(const Manifest& manifest, const LoadOptions& options,
                                               Warnings* warnings = nullptr);
 Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecording& entry,

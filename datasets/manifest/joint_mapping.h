@@ -52,7 +52,7 @@ inline constexpr PendulumTrack kPendulumTracks[] = {
 Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSkeleton& skeleton,
                                             const JointMapping& mapping);
 
-// As above, for named points. A name may leave out what stands before a colon ("LASI" for
+// The joints among named points. A name may leave out what stands before a colon ("LASI" for
 // "Anna:LASI") where that is clear. Defaults:
 //   hip     Hips, Hip or Pelvis, otherwise the mean of the pelvis markers: LASI RASI LPSI RPSI
 //           (also as L.ASIS, ASISl, ...), LASI RASI SACR, LASI RASI;

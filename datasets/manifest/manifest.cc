@@ -213,7 +213,7 @@ void SetUnless(bool is_default, const char* key, const T& value, Json* object) {
   }
 }
 
-// As above, for keys whose default value may as well be spelled out.
+// Sets a key whose default value may as well be spelled out.
 template <typename T>
 void SetOrKeep(bool is_default, const char* key, const T& value, Json* object) {
   if (!is_default || object->contains(key)) (*object)[key] = value;

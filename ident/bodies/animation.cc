@@ -426,8 +426,8 @@ std::vector<int> FramesByMotion(const Animation& animation, int poses) {
   return frames;
 }
 
-// As above, with the frame of the hardest push in place of the nearest one: a short push would fall
-// between two.
+// The frame of the hardest push takes the place of the nearest one: a short push would fall between
+// two.
 std::vector<int> FramesWithPush(const Animation& animation, int poses) {
   std::vector<int> frames = FramesByMotion(animation, poses);
   int hardest = -1;

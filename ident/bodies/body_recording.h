@@ -80,7 +80,7 @@ void FollowPrediction(const Prediction& prediction, std::vector<RestorationInput
 // People of a recording with predicted pendulums and the first poses that the prediction has seen.
 std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,
                                               const Prediction& prediction);
-// As above with recorded pendulums, after `observed` poses. rod_moves: beside predictions whose
+// People with their recorded pendulums, after `observed` poses. rod_moves: beside predictions whose
 // rods move, the rod has the recorded length of each frame, so that its tip is the recorded hip;
 // otherwise that of frame 0.
 std::vector<RestorationInput> RecordedPeople(const BodyRecording& recording, bool rod_moves,

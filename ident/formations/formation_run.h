@@ -73,7 +73,7 @@ FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int 
 
 // |hip velocity| at a frame, m/s: how fast it got there (backward difference); zero at frame 0.
 double HipSpeed(const FormationRun& run, int person, int frame);
-// As above, negative for a person who goes back more than aside: the colour of a wave.
+// The hip's speed, negative for a person who goes back more than aside: the colour of a wave.
 double SignedHipSpeed(const FormationRun& run, int person, int frame);
 
 // Bodies for people who were never recorded: a formation's people get the skeleton and pose

@@ -6,7 +6,7 @@
 //     const Prediction prediction = predictor.value().Predict();
 //   }
 //
-// Who forecasts and how forecasts are put together stands in observed/first_frames.h. Frames that
+// The forecasters, and how they are put together: observed/first_frames.h. Frames that
 // were seen are in the prediction as they were. From then on hips and leans are forecast, and the
 // cart is where the rod puts it; forces, steps and a moving rod are the rollout's. Before
 // anything is seen the prediction is that of Predict, to the bit. Every forecast needs that

@@ -32,7 +32,7 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
     ok_ = cost_->Evaluate(blocks_.data(), residuals_.data(),
                           with_jacobians ? jacobians.data() : nullptr);
   }
-  // As above, for a rollout in lanes, whose rows are made when Ceres asks for them.
+  // A rollout in lanes is prepared by its sums; its rows are made when Ceres asks for them.
   void Prepare(RolloutSums sums, bool with_jacobians) {
     sums_ = std::move(sums);
     Remember(with_jacobians);

@@ -103,7 +103,7 @@ struct PosedSkeleton {
 
 PosedSkeleton FitSkeleton(const Pose& rest, const Pose& wanted);
 
-// As above, for any tree of joints, a column each. Every parent precedes its children, -1 is a
+// Aims of any tree of joints, a column each. Every parent precedes its children, -1 is a
 // root, which goes where it is wanted; a joint turns towards its `aims`, joints further out, and
 // without any it goes with its parent.
 struct JointAims {

@@ -13,7 +13,7 @@ namespace pushid {
 
 // People side by side, one column each, over as many steps as each of them has.
 //
-// Those who go on longest are the first columns, so that a step has the first `active` of them.
+// People who go on longest are the first columns, so that a step has the first `active` of them.
 // What is kept of every step stands side by side in one matrix of total() columns.
 class BatchColumns {
  public:

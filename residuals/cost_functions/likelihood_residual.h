@@ -143,7 +143,7 @@ class LikelihoodResidual : public ceres::CostFunction {
 
 // The action of a path under process noise, whose minimum is the most probable path.
 //
-// Of dS = f(S) dt + g dW the probability of a smooth path is exp(-A) (Onsager and Machlup 1953;
+// A smooth path of dS = f(S) dt + g dW has the probability exp(-A) (Onsager and Machlup 1953;
 // Eq. 3 and 4 of Lyu et al., ACM MM 2021):
 //   A = sum over steps of dt |g^-1 ((S' - S) / dt - f(mid))|^2 / 2 + dt div f(mid) / 2
 // Rows of a step: sqrt(dt) g^-1 (...), and sqrt(2 (dt div f / 2 + c)): exact while positive.
