@@ -1,8 +1,8 @@
 // models: dual numbers: a value with its first derivatives by N inputs, over any scalar T.
 //
-// models knows no solver and hence no ceres::Jet; and the free modes (modal_stability.h) need
-// derivatives by the state whose own derivatives by the parameters are Jets: Dual<Jet, N>. Jets of
-// Jets do not mix with plain doubles; these do. Only what force terms are made of is here.
+// models knows no solver and hence no ceres::Jet; and a path's action (likelihood_residual.h) needs
+// derivatives by the state whose own derivatives by the nodes are Jets: Dual<Jet, N>. Jets of Jets
+// do not mix with plain doubles; these do. Only what force terms are made of is here.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,22 +1,12 @@
-// models: the free modes of a person at rest: does a small deviation die out?
+// models: the forces on a person at rest, linearized: does a small deviation die out
+// (ident/problem/behaviour.h), and what are the margins of the loop (ident/problem/linear_loop.h)?
 //
 // The forces of the rollout (self_force.h) and gravity (ipm.h) are linearized about rest by dual
-// numbers; nothing of them is written again here. About the upright posture the two planes
-// (x, theta) and (y, phi) decouple. With e the angle's deviation, v the cart's velocity, w = e',
-//   (m_xx + K) v' + m_xe w' = f_v v + f_e e + f_w w
-//   m_xe v' + m_ee w' = t_v v + t_e e + t_w w
-// where m_.. are elements of the mass matrix, f and t the derivatives of the forces less gravity,
-// and K = -d F / d v', which only a backward difference of the cart's velocity has, here in the
-// limit of short steps. So d/dt [e, v, w] = A [e, v, w]; the cart's own place is a free mode of
-// rate zero and left out, and so are learned terms: of a rod that moves (learned_terms.h) the
-// length alone has no part in the first order, upright. A user's own law (force_law.h) that couples
-// the planes does so in behaviour.h, not here, and so does a reaction delay, by a step that
-// remembers. Where feet stand (stance.h) or hold (standing.h)
+// numbers; nothing of them is written again here. Where feet stand (stance.h) or hold (standing.h)
 // rest is standing: the ankles balance, and the ground resists the cart.
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 
 #include "models/dual.h"
 #include "models/stance.h"
@@ -25,11 +15,10 @@
 namespace pushid {
 
 // First derivatives, at rest in the reference posture, of the self force less gravity.
-template <typename T>
 struct RestJacobian {
-  Eigen::Matrix<T, 4, 6> by_state;     // over [theta, phi, qd]
-  Eigen::Matrix<T, 2, 1> by_previous;  // diagonal: cart rows by the cart's velocity a step before
-  T ground = T(0.0);  // N s/m, on the cart's velocity after a step, where feet stand
+  Eigen::Matrix<double, 4, 6> by_state;  // over [theta, phi, qd]
+  Eigen::Vector2d by_previous;  // diagonal: cart rows by the cart's velocity a step before
+  double ground = 0.0;          // N s/m, on the cart's velocity after a step, where feet stand
 };
 
 // The pendulum that a person is at rest.
@@ -69,20 +58,20 @@ Vector4<T> ForceNearRest(Stance stance, const SelfForce& self, const ParameterSe
 // or by each alone.
 enum class RestInput { kAll, kState, kAnkle, kStep };
 
-template <typename T>
-RestJacobian<T> LinearizeAtRest(const ModelOptions& options, const SelfForce& self,
-                                const ParameterSet<T>& p, RestInput by = RestInput::kAll) {
+inline RestJacobian LinearizeAtRest(const ModelOptions& options, const SelfForce& self,
+                                    const ParameterSet<double>& p,
+                                    RestInput by = RestInput::kAll) {
   const Stance stance = options.stance;
-  using RestDual = Dual<T, 8>;
+  using RestDual = Dual<double, 8>;
   ParameterSet<RestDual> parameters;
   for (int i = 0; i < kNumParameters; ++i) parameters[i] = RestDual::Constant(p[i]);
   PendulumState<RestDual> moved, rest;
   Vector4<RestDual> previous;
-  for (int i = 0; i < 4; ++i) moved.qd[i] = RestDual::Input(T(0.0), 2 + i);
+  for (int i = 0; i < 4; ++i) moved.qd[i] = RestDual::Input(0.0, 2 + i);
   for (int i = 0; i < 2; ++i) {
-    moved.q[2 + i] = RestDual::Input(T(self.posture[i]), i);
+    moved.q[2 + i] = RestDual::Input(self.posture[i], i);
     rest.q[2 + i] = RestDual(self.posture[i]);
-    previous[i] = RestDual::Input(T(0.0), 6 + i);
+    previous[i] = RestDual::Input(0.0, 6 + i);
   }
   const auto input = [&](RestInput own) -> const PendulumState<RestDual>& {
     return by == RestInput::kAll || by == own ? moved : rest;
@@ -94,74 +83,13 @@ RestJacobian<T> LinearizeAtRest(const ModelOptions& options, const SelfForce& se
   const Vector4<RestDual> force =
       ForceNearRest(stance, self, parameters, state, perceived, previous) -
       Gravity<RestDual>(BodyAtRest(options, self.body, parameters), state.q);
-  RestJacobian<T> jacobian;
-  if (stance != Stance::kSlide) jacobian.ground = T(kHeldFast * self.body.mass);
+  RestJacobian jacobian;
+  if (stance != Stance::kSlide) jacobian.ground = kHeldFast * self.body.mass;
   for (int row = 0; row < 4; ++row) {
-    jacobian.by_state.row(row) = force[row].v.template head<6>().transpose();
+    jacobian.by_state.row(row) = force[row].v.head<6>().transpose();
   }
   for (int i = 0; i < 2; ++i) jacobian.by_previous[i] = force[i].v[6 + i];
   return jacobian;
-}
-
-// The characteristic polynomial lambda^3 + c2 lambda^2 + c1 lambda + c0 of one plane's A, in 1/s.
-template <typename T>
-struct ModePolynomial {
-  T c2, c1, c0;
-
-  // The polynomial of the modes' rates plus `margin`: its roots all lie left of zero exactly when
-  // those of this one all lie left of -margin.
-  ModePolynomial Shifted(double margin) const {
-    const double s = margin;
-    return {c2 - 3.0 * s, c1 - 2.0 * s * c2 + 3.0 * s * s, c0 - s * c1 + s * s * c2 - s * s * s};
-  }
-  // Routh and Hurwitz: all modes decay when all three are positive.
-  std::array<T, 3> Conditions() const { return {c2, c0, c2 * c1 - c0}; }
-};
-
-// A person who stands upright at rest, linearized.
-template <typename T>
-struct UprightRest {
-  static constexpr double kStep = 1.0;  // s; any: what follows does not depend on it
-  BodyOf<T> body;
-  RestJacobian<T> jacobian;
-
-  UprightRest(const ModelOptions& options, const Body& person, const ParameterSet<T>& p)
-      : body(BodyAtRest(options, person, p)) {
-    // Quadratic damping vanishes at rest: the floor under its norm, there for the rollout's
-    // derivatives, is nothing to rely on.
-    ParameterSet<T> linear = p;
-    linear[kCq] = linear[kDq] = T(0.0);
-    const SelfForce self(options, person, Vector4<double>::Zero(), kStep);
-    jacobian = LinearizeAtRest(options, self, linear);
-  }
-};
-
-// plane: 0 for (x, theta), 1 for (y, phi).
-template <typename T>
-ModePolynomial<T> FreeModes(const UprightRest<T>& upright, int plane) {
-  const BodyOf<T>& body = upright.body;
-  const RestJacobian<T>& rest = upright.jacobian;
-  const Matrix4<T> mass = MassMatrix<T>(body, Angles<T>());
-  const int cart = plane, angle = 2 + plane;                   // rows
-  const int at_e = plane, at_v = 2 + plane, at_w = 4 + plane;  // columns
-  const T k = UprightRest<T>::kStep * rest.by_previous[plane];
-  const T f_e = rest.by_state(cart, at_e), f_w = rest.by_state(cart, at_w);
-  const T f_v = rest.by_state(cart, at_v) + rest.by_previous[plane] - rest.ground;
-  const T t_e = rest.by_state(angle, at_e), t_v = rest.by_state(angle, at_v);
-  const T t_w = rest.by_state(angle, at_w);
-  const T m_xe = mass(cart, angle), m_ee = mass(angle, angle);
-  const T m_xx = mass(cart, cart) + k;
-  const T det = m_xx * m_ee - m_xe * m_xe;
-  const auto of_cart = [&](const T& f, const T& t) -> T { return (m_ee * f - m_xe * t) / det; };
-  const auto of_angle = [&](const T& f, const T& t) -> T { return (m_xx * t - m_xe * f) / det; };
-  const T a_e = of_cart(f_e, t_e), a_v = of_cart(f_v, t_v), a_w = of_cart(f_w, t_w);
-  const T b_e = of_angle(f_e, t_e), b_v = of_angle(f_v, t_v), b_w = of_angle(f_w, t_w);
-  // A = [0 0 1; a_e a_v a_w; b_e b_v b_w] over [e, v, w].
-  ModePolynomial<T> polynomial;
-  polynomial.c2 = -(a_v + b_w);
-  polynomial.c1 = a_v * b_w - a_w * b_v - b_e;
-  polynomial.c0 = a_v * b_e - a_e * b_v;
-  return polynomial;
 }
 
 }  // namespace pushid

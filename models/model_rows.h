@@ -14,9 +14,8 @@
 
 // What --self_force names: at most one law and at most one network.
 //
-// Law(id, name, first, last, mode_weight, note): a law of closed form (self_terms.h).
+// Law(id, name, first, last, note): a law of closed form (self_terms.h).
 //   first, last  its parameters, which are zero where it does not act and are freed where it does
-//   mode_weight  weight with it of the demand that free modes decay
 //   note         for the help
 // Network(id, name, gates, recurrent, cell, biased, Kind): a kind of network (self_network.h).
 //   gates      rows [W U C] per hidden unit
@@ -26,7 +25,7 @@
 //              derivatives by hand (ActivateMlp and DeactivateMlp in residuals/adjoint/)
 // clang-format off
 #define PUSHID_SELF_FORCES(Law, Network) \
-  Law(kLinear, "linear", kAx, kDq, 30.0, "cross terms, quadratic") \
+  Law(kLinear, "linear", kAx, kDq, "cross terms, quadratic") \
   Network(kMlp, "mlp", 1, false, false, false, Mlp) \
   Network(kGru, "gru", 2, true, false, false, Gru) \
   Network(kLstm, "lstm", 3, true, true, false, Lstm) \

@@ -22,7 +22,7 @@ Error NotAsFitted(const std::string& id, const std::string& what) {
 // The fit without what was put in beside its recordings, by the same weights.
 FitOptions OfDataAlone(FitOptions options) {
   for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
-  options.settling_weight = options.mode_weight = 0.0;
+  options.settling_weight = 0.0;
   return options;
 }
 

@@ -86,7 +86,7 @@ constexpr EnumNames<ClusterBy, 3> Names(ClusterBy) {
 
 struct FitOptions {
   std::string preset = "tail";                      // it was made from (presets.h)
-  SelfForceKind self_force = SelfForceKind::kNone;  // by SetSelfForce (presets.h)
+  SelfForceKind self_force = SelfForceKind::kNone;
   ModelOptions model;
   ParameterTable table;
   bool preset_priors = true;  // false: FreeTerms takes the weak priors away
@@ -106,9 +106,6 @@ struct FitOptions {
   // Weight of the demand that people settle (cost_functions/rest_residual.h), which the data may
   // contradict (fit/fit.h): 0: none.
   double settling_weight = 0.0;
-  // Weight of the hinge that makes the free modes at rest decay; 0 for models with no term that
-  // could feed a mode.
-  double mode_weight = 0.0;
   // Which parameters may differ by unit: names, comma-separated, "all", "all,-mu" (all but mu)
   // or "none".
   std::string pool = "none";

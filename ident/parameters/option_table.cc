@@ -267,7 +267,7 @@ Row SelfForceRow() {
                                const Result<SelfForceChoice> choice =
                                    ParseSelfForce("--self_force", text);
                                if (!choice.ok()) return choice.error();
-                               SetSelfForce(choice.value().kind, o);
+                               o->self_force = choice.value().kind;
                                LearnedTerms network = Learned(*o);
                                network.shape = choice.value().network;
                                SetLearned(network, o);
@@ -454,7 +454,6 @@ std::vector<Row> WeightRows() {
           NumberRow("settling_weight", "/settling_weight", &O::settling_weight, kNotNegative,
                     "weight of the settling constraint (pushed people must settle in the settling "
                     "simulations); 0: off")),
-      Stored(NumberRow("mode_weight", "/mode_weight", &O::mode_weight, kNotNegative, "")),
       Decided(PoolByRow()),
       PoolingSigmaRow(),
   };

@@ -60,11 +60,10 @@ enum class SelfForceKind { kNone, PUSHID_SELF_FORCES(PUSHID_LAW, PUSHID_NO_SELF_
 struct SelfForceLaw {
   const char* name;
   SelfForceKind value;
-  int first, last;     // its parameters; none where last is less
-  double mode_weight;  // default with it
+  int first, last;  // its parameters; none where last is less
   const char* note;
 };
-inline constexpr SelfForceLaw kSelfForces[] = {{"none", SelfForceKind::kNone, 0, -1, 0.0, ""},
+inline constexpr SelfForceLaw kSelfForces[] = {{"none", SelfForceKind::kNone, 0, -1, ""},
 #define PUSHID_LAW(id, name, ...) {name, SelfForceKind::id, __VA_ARGS__},
                                                PUSHID_SELF_FORCES(PUSHID_LAW, PUSHID_NO_SELF_FORCE)
 #undef PUSHID_LAW

@@ -58,7 +58,7 @@ FitOptions GroupPreset() {
   FitOptions o = TailPreset();
   o.preset = "group";
   o.model.interaction.spring = o.model.interaction.damping = true;
-  SetSelfForce(SelfForceKind::kLinear, &o);
+  o.self_force = SelfForceKind::kLinear;
   o.table[kKdTheta] = BaseTable()[kKdTheta];
   // Free, it predicts no better (hipADE 0.1000 against 0.1009 m, mean of three sets of folds).
   o.table[kTailBase] = BaseTable()[kTailBase];
@@ -86,7 +86,7 @@ void SetFixed(FitOptions* options) {
   options->model.push = PushUse::kAsRecorded;
   options->model.push_tail = PushTail::kNone;
   options->model.directions = Directions::kBody;
-  options->settling_weight = options->mode_weight = 0.0;
+  options->settling_weight = 0.0;
   for (const WeakStart& start : {WeakStart{kKpTheta, 1250, 1250}, WeakStart{kKpPhi, 1250, 1250},
                                  WeakStart{kKdTheta, 300, 300}, WeakStart{kKdPhi, 300, 300},
                                  WeakStart{kComHeight, 1.09, 0.055}}) {
@@ -272,11 +272,6 @@ bool LiftsAFoot(const PersonSteps& person) {
 
 }  // namespace
 
-void SetSelfForce(SelfForceKind self_force, FitOptions* options) {
-  options->self_force = self_force;
-  options->mode_weight = RowOf(self_force).mode_weight;
-}
-
 void SetStance(Stance stance, FitOptions* options) {
   options->model.stance = stance;
   if (stance == Stance::kSlide) return;
@@ -284,7 +279,7 @@ void SetStance(Stance stance, FitOptions* options) {
   if (stance == Stance::kFixed) return SetFixed(options);
   options->model.push = PushUse::kAsRecorded;
   options->model.directions = Directions::kAxes;  // the feet's support has a front
-  SetSelfForce(SelfForceKind::kNone, options);    // those act on feet that slide
+  options->self_force = SelfForceKind::kNone;    // those act on feet that slide
   const NamedPreset* preset = FindPreset(options->preset);
   if (preset != nullptr && preset->pooled_where_feet_step != nullptr) {
     options->pool = preset->pooled_where_feet_step;
@@ -319,7 +314,7 @@ void SetLikelihood(Likelihood likelihood, FitOptions* options) {
   options->likelihood = likelihood;
   if (likelihood == Likelihood::kTrajectory) return;
   options->model.process_noise = ProcessNoise::kDiagonal;
-  options->settling_weight = options->mode_weight = 0.0;
+  options->settling_weight = 0.0;
 }
 
 std::optional<Stance> StanceOfMovers(const std::string& preset) {
@@ -396,8 +391,6 @@ void SetBody(BodyModel body, FitOptions* options) {
 void SetDelay(Delay delay, FitOptions* options) {
   options->model.delay = delay;
   if (delay == Delay::kNone) return;
-  // A hinge on the free modes knows none of it; settling simulations do.
-  options->mode_weight = 0.0;
   // Weak priors: published delays are 0.10 to 0.16 s (median 0.134), passive shares 0 to 0.9.
   for (const WeakStart& start :
        {WeakStart{kReactionDelay, 0.13, 0.1}, WeakStart{kStepDelay, 0.2, 0.15},

@@ -82,10 +82,6 @@ void SetLikelihood(Likelihood likelihood, FitOptions* options);
 // Likelihoods of single steps are for models without.
 std::string MemoryOf(const ModelOptions& model);
 
-// The self force together with the hinge on the free modes that goes with it: a linear self force
-// can feed a mode that the settling simulations do not excite.
-void SetSelfForce(SelfForceKind self_force, FitOptions* options);
-
 // Masses by the table: the point at the hip to start from, nothing free.
 void SetBody(BodyModel body, FitOptions* options);
 

@@ -185,7 +185,7 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
   const Body& body = scene.people[0].body;
   const SelfForce self(options, body, scene.people[0].start.q, scene.dt);
   const bool late = options.delay != Delay::kNone;
-  RestJacobian<double> rest =
+  RestJacobian rest =
       LinearizeAtRest(options, self, parameters, late ? RestInput::kState : RestInput::kAll);
   const Body at_rest = BodyAtRest(options, body, parameters);
   const Eigen::Matrix4d inverse =
@@ -411,9 +411,9 @@ std::string VerdictRemedy(Verdict verdict, const ModelOptions& options) {
     case Verdict::kSelfPropelling:
       return "a larger --settling_weight makes it settle";
     case Verdict::kUnstableThoughSettled:
-      // The hinge on the modes sees no network; one between people has no part in them.
       return LearnsAlone(options) ? "a smaller --network_prior stabilizes it"
-                                  : "--self_force=linear makes the free modes decay, or none does";
+                                  : "priors nearer to a person who stands stabilize it, as "
+                                    "--prior=Kp_theta:2000:300, or --self_force=none";
     case Verdict::kRodRunsAway:
       return "a smaller --network_prior or --rod=constant stabilizes it";
     case Verdict::kNegativeDrag:

@@ -352,7 +352,6 @@ FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_netw
 
 namespace {
 
-constexpr double kLeastDecay = 0.2;  // 1/s, asked of free modes at rest
 constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the others
 
 using Family = ResidualFamily;
@@ -431,15 +430,10 @@ void AddStagePriors(const Family& family, const Place& at) {
   }
 }
 
-std::vector<double*> UnitBlocks(const Place& at) {
-  std::vector<double*> blocks = {at.point->shared.data()};
-  if (!at.unit.empty()) blocks.push_back(at.point->unit[at.unit].data());
-  return blocks;
-}
-
 void AddSettling(const Family& family, const Place& at) {
   const Options& o = at.problem.options();
-  std::vector<double*> blocks = UnitBlocks(at);
+  std::vector<double*> blocks = {at.point->shared.data()};
+  if (!at.unit.empty()) blocks.push_back(at.point->unit[at.unit].data());
   if (at.problem.map().num_weights > 0) blocks.push_back(at.point->weights.data());
   // Whether they can be rolled out here: Ceres cannot start from a block that fails.
   const auto add = [&](const std::vector<Scene>& scenes) {
@@ -456,14 +450,6 @@ void AddSettling(const Family& family, const Place& at) {
       if (!add({scene})) ++at.built->rests_left_out;
     }
   }
-}
-
-void AddModes(const Family& family, const Place& at) {
-  const Options& o = at.problem.options();
-  const Body body = SettlingScene(kSettlingMass, 0.0).people[0].body;
-  at.built->Add(std::make_unique<ModalStabilityResidual>(
-                    o.model, body, at.problem.map(), kLeastDecay, o.mode_weight, !at.unit.empty()),
-                UnitBlocks(at), family.cluster);
 }
 
 }  // namespace
@@ -486,11 +472,6 @@ const std::vector<ResidualFamily>& ResidualFamilies() {
       {"settling", Family::kUnit, FitProblem::kSettlingCluster,
        [](const Options& o, int horizon) { return horizon == 0 && o.settling_weight > 0.0; },
        AddSettling},
-      {"modes", Family::kUnit, FitProblem::kSettlingCluster,
-       [](const Options& o, int horizon) {
-         return horizon == 0 && o.mode_weight > 0.0 && o.model.delay == Delay::kNone;
-       },
-       AddModes},
   };
   return families;
 }

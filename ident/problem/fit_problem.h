@@ -149,7 +149,7 @@ class FitProblem {
   // Clusters of what is not data.
   static constexpr int kPriorCluster = -1;     // priors on parameters
   static constexpr int kPoolingCluster = -2;   // what ties the units' deviations to zero
-  static constexpr int kSettlingCluster = -3;  // demands on the person: settling, modes, stability
+  static constexpr int kSettlingCluster = -3;  // the demand that people settle
   static constexpr int kNetworkCluster = -4;   // what ties a network's weights to zero
 
   // By how much the logarithm of the noise may fall in a solve before its rows end

@@ -17,7 +17,7 @@ constexpr double kLowestHz = 1e-3, kHighestHz = 100.0;
 constexpr int kSteps = 4000;
 
 // One plane's part of the derivatives: rows of cart and angle, columns e, v, w.
-Eigen::Matrix<double, 2, 3> InPlane(const RestJacobian<double>& rest, int plane) {
+Eigen::Matrix<double, 2, 3> InPlane(const RestJacobian& rest, int plane) {
   Eigen::Matrix<double, 2, 3> part;
   for (int row = 0; row < 2; ++row) {
     for (int column = 0; column < 3; ++column) {
@@ -76,10 +76,13 @@ LinearLoop::LinearLoop(const ModelOptions& options, const Body& person,
     : plane_(plane) {
   ModelOptions upright = options;
   upright.posture = Posture::kUpright;
-  const UprightRest<double> rest(upright, person, p);
-  ParameterSet<double> linear = p;  // as UprightRest
+  // Quadratic damping vanishes at rest: the floor under its norm, there for the rollout's
+  // derivatives, is nothing to rely on.
+  ParameterSet<double> linear = p;
   linear[kCq] = linear[kDq] = 0.0;
-  const SelfForce self(upright, person, Vector4<double>::Zero(), UprightRest<double>::kStep);
+  constexpr double kStep = 1.0;  // s; any: what follows does not depend on it
+  const SelfForce self(upright, person, Vector4<double>::Zero(), kStep);
+  const RestJacobian rest = LinearizeAtRest(upright, self, linear);
   const bool late = options.delay != Delay::kNone;
   // Derivatives of the whole person at once, to be taken apart below.
   const auto by = [&](RestInput input) {
@@ -98,17 +101,17 @@ LinearLoop::LinearLoop(const ModelOptions& options, const Body& person,
   now_ += ankle * at_once.matrix().asDiagonal();
   ankle_ = ankle * (1.0 - at_once).matrix().asDiagonal();
 
-  const Body& body = rest.body;
+  const Body body = BodyAtRest(upright, person, p);
   if (options.body == BodyModel::kTable) push_gain_ = p[kPushGain];
   const Matrix4<double> mass = MassMatrix(body, Angles<double>());
   mass_ << mass(plane, plane), mass(plane, 2 + plane), mass(2 + plane, plane),
       mass(2 + plane, 2 + plane);
   mgl_ = kGravity * body.point_mass() * body.pendulum_length();
   // A backward difference of the cart's velocity: in short steps a mass.
-  const double by_previous = rest.jacobian.by_previous[plane];
+  const double by_previous = rest.by_previous[plane];
   inertia_ = mass_;
-  inertia_(0, 0) += UprightRest<double>::kStep * by_previous;
-  now_(0, 1) += by_previous - rest.jacobian.ground;
+  inertia_(0, 0) += kStep * by_previous;
+  now_(0, 1) += by_previous - rest.ground;
 }
 
 Eigen::Matrix2cd LinearLoop::Impedance(const Complex& s, bool with_ankle) const {

@@ -257,13 +257,12 @@ FitCommand Adviser::SettleHarder(double weight) const {
 
 FitCommand Adviser::DecayingModes() const {
   const FitOptions& o = result_.options;
-  // The hinge on the modes sees no network; one between people has no part in them.
   if (LearnsAlone(o.model)) {
     const double prior = o.network_prior > 0.0 ? 0.5 * o.network_prior : FitOptions{}.network_prior;
     return Same().Set("network_prior", Rounded(prior, 6));
   }
-  // The fit of a linear one holds the modes; where that did not, its terms drive them.
-  return Same().Set("self_force", o.self_force == SelfForceKind::kLinear ? "none" : "linear");
+  if (o.self_force == SelfForceKind::kLinear) return Same().Set("self_force", "none");
+  return SettleHarder(kMuchSettling);
 }
 
 void Adviser::Person() {
@@ -289,7 +288,7 @@ void Adviser::Person() {
       }
       break;
     case Verdict::kUnstableThoughSettled:
-      if (tail) return Add(sentence + "; constrain the free modes to decay.", DecayingModes());
+      if (tail) return Add(sentence + "; fit again without what drives it.", DecayingModes());
       break;
     case Verdict::kNegativeDrag:
       if (tail) {

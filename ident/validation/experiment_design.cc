@@ -30,7 +30,7 @@ MatrixXd Information(const FitProblem& problem, const FitPoint& estimate,
                      const PendulumRecording& candidate, const std::vector<int>& known) {
   FitOptions options = problem.options();
   for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
-  options.settling_weight = options.mode_weight = 0.0;
+  options.settling_weight = 0.0;
   const std::vector<PendulumRecording> one = {candidate};
   const FitProblem alone(one, options);
   FitPoint point = alone.NominalPoint();

@@ -1,12 +1,10 @@
-// residuals: settling by rollouts with derivatives, and the hinge on the free modes.
+// residuals: settling by rollouts with derivatives.
 #include "residuals/cost_functions/rest_residual.h"
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
-#include "residuals/jets/vector_jet.h"
 #include "residuals/rollout_residual.h"
 
 namespace pushid {
@@ -43,9 +41,6 @@ void SettlingOf(const PendulumState<double>& state, const SelfForce& self, doubl
   by_state->block<1, 2>(0, 4) = by_velocity;
   for (int axis = 0; axis < 2; ++axis) (*by_state)(1 + axis, 2 + axis) = by_angle[axis](0);
 }
-
-constexpr double kRate = 3.0;    // 1/s, sqrt(g / l): the modes' natural scale
-constexpr double kHinge = 0.01;  // eps
 
 }  // namespace
 
@@ -256,84 +251,6 @@ bool SettlingResidual::Evaluate(double const* const* blocks, double* residuals,
     rollouts_.DerivativesAt(slope.scene, slope.frame, slope.person, &state);
     by_column = scale * slope.by_state * state;
     columns.Scatter(by_column, slope.row, num_residuals(), jacobians);
-  }
-  return true;
-}
-
-ModalStabilityResidual::ModalStabilityResidual(const ModelOptions& options, const Body& body,
-                                               const ParameterMap& map, double margin,
-                                               double weight, bool of_unit)
-    : options_(options), body_(body), map_(map), margin_(margin), weight_(weight) {
-  mutable_parameter_block_sizes()->push_back(map.num_shared());
-  if (of_unit) mutable_parameter_block_sizes()->push_back(map.num_deviations);
-  set_num_residuals(kResiduals);
-}
-
-template <typename T>
-Eigen::Matrix<T, ModalStabilityResidual::kResiduals, 1> ModalStabilityResidual::Hinges(
-    const ParameterSet<T>& p) const {
-  using std::sqrt;
-  constexpr double kScale[] = {kRate, kRate * kRate * kRate, kRate * kRate * kRate};
-  const UprightRest<T> rest(options_, body_, p);
-  Eigen::Matrix<T, kResiduals, 1> hinges;
-  for (int plane = 0; plane < 2; ++plane) {
-    const std::array<T, 3> conditions = FreeModes(rest, plane).Shifted(margin_).Conditions();
-    for (int i = 0; i < 3; ++i) {
-      const T x = -conditions[i] / kScale[i];
-      hinges[3 * plane + i] = 0.5 * weight_ * (x + sqrt(x * x + kHinge * kHinge));
-    }
-  }
-  return hinges;
-}
-
-Eigen::Matrix<double, ModalStabilityResidual::kResiduals, kNumParameters>
-ModalStabilityResidual::ByParameter(const ParameterSet<double>& p,
-                                    const std::vector<ColumnEntry>& entries) const {
-  constexpr size_t kAtATime = VectorJet::kColumns;
-  std::set<Parameter> moved;
-  for (const ColumnEntry& entry : entries) moved.insert(entry.parameter);
-  const std::vector<Parameter> parameters(moved.begin(), moved.end());
-  Eigen::Matrix<double, kResiduals, kNumParameters> by_parameter;
-  by_parameter.setZero();
-  for (size_t first = 0; first < parameters.size(); first += kAtATime) {
-    const size_t count = std::min(kAtATime, parameters.size() - first);
-    ParameterSet<VectorJet> jets;
-    for (int i = 0; i < kNumParameters; ++i) jets[i] = VectorJet(p[i]);
-    for (size_t k = 0; k < count; ++k) jets[parameters[first + k]].AddSlope(k, 1.0);
-    const Eigen::Matrix<VectorJet, kResiduals, 1> hinges = Hinges(jets);
-    for (size_t k = 0; k < count; ++k) {
-      for (int row = 0; row < kResiduals; ++row) {
-        by_parameter(row, parameters[first + k]) = hinges[row].Slope(k);
-      }
-    }
-  }
-  return by_parameter;
-}
-
-bool ModalStabilityResidual::Evaluate(double const* const* blocks, double* residuals,
-                                      double** jacobians) const {
-  const bool of_unit = parameter_block_sizes().size() > 1;
-  const ParameterSet<double> p = map_.Apply<double>(blocks[0], of_unit ? blocks[1] : nullptr);
-  Eigen::Map<Eigen::Matrix<double, kResiduals, 1>> values(residuals);
-  values = Hinges(p);
-  if (jacobians == nullptr) return true;
-  const int shared = map_.num_shared();
-  const std::vector<ColumnEntry> entries = map_.Entries(p, of_unit ? shared : -1);
-  const Eigen::Matrix<double, kResiduals, kNumParameters> by_parameter = ByParameter(p, entries);
-  RowMajorMatrix by_column =
-      RowMajorMatrix::Zero(kResiduals, shared + (of_unit ? map_.num_deviations : 0));
-  for (const ColumnEntry& entry : entries) {
-    for (int row = 0; row < kResiduals; ++row) {
-      by_column(row, entry.column) += entry.derivative * by_parameter(row, entry.parameter);
-    }
-  }
-  for (int block = 0, column = 0; block < (of_unit ? 2 : 1); ++block) {
-    const int size = parameter_block_sizes()[block];
-    if (jacobians[block] != nullptr) {
-      Eigen::Map<RowMajorMatrix>(jacobians[block], kResiduals, size) =
-          by_column.middleCols(column, size);
-    }
-    column += size;
   }
   return true;
 }

@@ -1,22 +1,12 @@
-// residuals: people must come to rest: within a time after a push, and from small deviations.
+// residuals: people must come to rest within a time after a push.
 //
-// Settling, for the people of settling simulations (models/scene.h), from WaitSeconds after the
+// For the people of settling simulations (models/scene.h), from WaitSeconds after the
 // push for a second, n = frames times people of one simulation:
 //   r = weight / sqrt(n) [ hinge(speed / a_v - 1)             1
 //                          hinge(|angles - rest| / a_q - 1)   2 ]     hinge(x) = max(0, x)
 // `rest` is the upright or initial posture that the balance aims at. a_v and a_q are nine tenths of
 // what counts as settled, so that a finite weight suffices: people who settle are not moved at all,
 // and need no derivatives, which are rolled out only up to the last frame that has any.
-//
-// Modal stability: the free modes of a person at rest must decay, by a hinge on the three
-// Routh-Hurwitz conditions (models/modal_stability.h) of each plane, of the polynomial shifted by
-// `margin`: zero (to eps^2) where every mode decays faster than `margin` 1/s.
-//   r = weight * hinge(-condition / scale),   hinge(x) = (x + sqrt(x^2 + eps^2)) / 2
-//   residuals: 6; blocks: the shared parameters and, of_unit, the deviations of a unit.
-// Settling alone leaves an unstable mode that the simulations do not excite, such as one to the
-// side. Rejected: a hinge on the eigenvalues themselves, whose derivatives are infinite where two
-// of them meet, which is where a person stops swinging; and recordings rolled out past their end,
-// which are non-zero at the truth of synthetic data and bias a fit.
 #pragma once
 
 #include <ceres/cost_function.h>
@@ -25,7 +15,6 @@
 #include <string>
 #include <vector>
 
-#include "models/modal_stability.h"
 #include "models/rollout.h"
 #include "residuals/jets/autodiff_rollout.h"
 #include "residuals/lanes/person_lanes.h"
@@ -99,28 +88,6 @@ class SettlingResidual : public ceres::CostFunction {
   // for residuals just before: the simulations are those of the blocks in rolled_at_.
   mutable SceneRollouts rollouts_;
   mutable std::optional<std::vector<double>> rolled_at_;
-};
-
-class ModalStabilityResidual : public ceres::CostFunction {
- public:
-  static constexpr int kResiduals = 6;
-
-  ModalStabilityResidual(const ModelOptions& options, const Body& body, const ParameterMap& map,
-                         double margin, double weight, bool of_unit = false);
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
-
- private:
-  template <typename T>
-  Eigen::Matrix<T, kResiduals, 1> Hinges(const ParameterSet<T>& p) const;
-  // Derivatives of the hinges by what the entries move, others of the same value among it; zero by
-  // all else.
-  Eigen::Matrix<double, kResiduals, kNumParameters> ByParameter(
-      const ParameterSet<double>& p, const std::vector<ColumnEntry>& entries) const;
-
-  ModelOptions options_;
-  Body body_;
-  ParameterMap map_;
-  double margin_, weight_;
 };
 
 }  // namespace pushid

@@ -83,7 +83,7 @@ BENCHMARK_CAPTURE(UncertaintyAlone, ldp, "ldp")->Unit(benchmark::kMillisecond);
 FitOptions GroupOptions(SelfForceKind self_force) {
   FitOptions options = MakePreset("group").value();
   options.pool = "none";
-  SetSelfForce(self_force, &options);
+  options.self_force = self_force;
   FreeTerms(&options);
   return options;
 }

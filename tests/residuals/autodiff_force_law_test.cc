@@ -105,57 +105,6 @@ TEST(OwnLaw, IsAPartOfReportsOnlyWhereThereIsOne) {
   EXPECT_FALSE(Acts(kOwnSecond, twins.law));
 }
 
-// Values and, by Jets over the parameters, first derivatives of the modes.
-TEST(OwnLaw, MovesTheFreeModesAsTheFrictionItRepeats) {
-  const Twins twins;
-  using Jet = ceres::Jet<double, 2>;  // by the drag, and by another parameter
-  for (int plane : {0, 1}) {
-    const auto modes = [&](const ModelOptions& options, const ParameterSet<double>& p,
-                           Parameter drag) {
-      ParameterSet<Jet> jets;
-      for (int i = 0; i < kNumParameters; ++i) jets[i] = Jet(p[i]);
-      jets[drag] = Jet(p[drag], 0);
-      jets[kTx].v[1] = jets[kTy].v[1] = 1.0;
-      return FreeModes(UprightRest<Jet>(options, {80.0, 0.9, 0.0}, jets), plane);
-    };
-    const auto friction = modes(twins.friction, twins.with_friction, kMu);
-    const auto law = modes(twins.law, twins.with_law, kOwn);
-    const auto expect = [](const Jet& actual, const Jet& expected) {
-      EXPECT_NEAR(actual.a, expected.a, 1e-9 * std::abs(expected.a));
-      EXPECT_GT(std::abs(expected.v[0]), 1e-4);
-      for (int i : {0, 1}) EXPECT_NEAR(actual.v[i], expected.v[i], 1e-8);
-    };
-    expect(law.c2, friction.c2);
-    expect(law.c1, friction.c1);
-    expect(law.c0, friction.c0);
-  }
-}
-
-// Second derivatives of a law that bends: the modes' slopes against differences of the modes.
-TEST(OwnLaw, BentLawsBendTheFreeModes) {
-  ModelOptions options;
-  options.own_laws = {BentLaw()};
-  ParameterSet<double> p = RecoveringParameters();
-  p[kOwn] = 0.4, p[kOwnSecond] = 0.3;
-  const Body body{80.0, 0.9, 0.0};
-  using Jet = ceres::Jet<double, 1>;
-  for (Parameter id : {kOwn, kOwnSecond}) {
-    for (int plane : {0, 1}) {
-      ParameterSet<Jet> jets;
-      for (int i = 0; i < kNumParameters; ++i) jets[i] = Jet(p[i]);
-      jets[id].v[0] = 1.0;
-      const double slope = FreeModes(UprightRest<Jet>(options, body, jets), plane).c2.v[0];
-      const auto at = [&](double step) {
-        ParameterSet<double> moved = p;
-        moved[id] += step;
-        return FreeModes(UprightRest<double>(options, body, moved), plane).c2;
-      };
-      EXPECT_NEAR(slope, (at(1e-5) - at(-1e-5)) / 2e-5, 1e-5 * std::abs(slope));
-      EXPECT_GT(std::abs(slope), 0.1);
-    }
-  }
-}
-
 // Sensitivities against Jets through the whole rollout; contact and a learned rod beside it.
 TEST(OwnLaw, SensitivitiesAreThoseOfJets) {
   Random random(7);

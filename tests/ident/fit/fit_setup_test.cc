@@ -30,7 +30,6 @@ TEST(FitSetup, OptionsOverThePreset) {
                                        {"prior", "a_x:-9:3"}})
                            .value();
   EXPECT_EQ(o.self_force, SelfForceKind::kLinear);
-  EXPECT_GT(o.mode_weight, 0.0);  // comes with the linear self force
   EXPECT_FALSE(o.table[kMu].free);
   EXPECT_EQ(o.table[kMu].nominal, 30.0);
   EXPECT_TRUE(o.table[kBx].free);
@@ -213,7 +212,7 @@ TEST(FitSetup, TermsChangedByHandAreTheSameProblem) {
   FreeTerms(&by_hand);
   EXPECT_FALSE(AnyPooled(by_hand.table));
   FitOptions linear = MakePreset("tail").value();
-  SetSelfForce(SelfForceKind::kLinear, &linear);
+  linear.self_force = SelfForceKind::kLinear;
   FreeTerms(&linear);
   EXPECT_EQ(
       SettingsJson(linear).dump(),

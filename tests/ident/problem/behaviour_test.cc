@@ -145,42 +145,6 @@ TEST(Behaviour, TooSoftABalanceFalls) {
   EXPECT_TRUE(b.simulations.back().fell);
 }
 
-// Largest real root of the free modes' polynomials, 1/s.
-double FastestFreeMode(const ModelOptions& options, const ParameterSet<double>& p) {
-  const Body body{80.0, kReferenceRod, 0.0};
-  double fastest = -1e9;
-  for (int plane : {0, 1}) {
-    const ModePolynomial<double> c = FreeModes(UprightRest<double>(options, body, p), plane);
-    Eigen::Matrix3d companion;
-    companion << 0, 0, -c.c0, 1, 0, -c.c1, 0, 1, -c.c2;
-    fastest = std::max(fastest, Eigenvalues(companion).real().maxCoeff());
-  }
-  return fastest;
-}
-
-// The step's growth is that of the modes in the limit of short steps; here they differ by percents.
-TEST(Behaviour, GrowthIsThatOfTheFreeModesWithAndWithoutTheCartsAcceleration) {
-  Random random(11);
-  int grow = 0;
-  for (int trial = 0; trial < 60; ++trial) {
-    ModelOptions options = Anisotropic();
-    options.friction = FrictionKind::kAnisotropic;
-    ParameterSet<double> p = FirmParameters();
-    p[kMu] = random.Uniform(-40, 60), p[kMuY] = random.Uniform(20, 60);
-    p[kAx] = random.Uniform(-15, 2);
-    p[kKdX] = random.Uniform(-4, 4), p[kKdY] = random.Uniform(-4, 4);
-    for (CartDerivative derivative : {CartDerivative::kNone, CartDerivative::kBackward}) {
-      options.cart_derivative = derivative;
-      const double growth = ComputeBehaviour(options, p).fastest_growth;
-      const double mode = FastestFreeMode(options, p);
-      EXPECT_NEAR(growth, mode, 0.02 + 0.1 * std::abs(mode)) << "Kd_x " << p[kKdX];
-      grow += growth > 0.0;
-    }
-  }
-  EXPECT_GT(grow, 10);
-  EXPECT_LT(grow, 110);
-}
-
 // The growth of one step of the rollout itself, linearized by Jets about rest.
 double GrowthOfTheRollout(const ModelOptions& options, const ParameterSet<double>& p) {
   using Jet = ceres::Jet<double, 8>;  // theta, phi, qd, the cart's velocity a step before

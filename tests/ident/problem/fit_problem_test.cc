@@ -115,10 +115,10 @@ TEST(FitProblem, FamiliesOfAStage) {
   EXPECT_EQ(FamiliesOf(options, kFirst),
             (Names{"trajectory", "priors", "pooling", "stage priors"}));
   EXPECT_EQ(FamiliesOf(options, kLast), (Names{"trajectory", "priors", "pooling", "settling"}));
-  SetSelfForce(SelfForceKind::kLinear, &options);
+  options.self_force = SelfForceKind::kLinear;
   options.network_prior = 0.5;
   EXPECT_EQ(FamiliesOf(options, kLast),
-            (Names{"trajectory", "priors", "pooling", "network prior", "settling", "modes"}));
+            (Names{"trajectory", "priors", "pooling", "network prior", "settling"}));
   SetLikelihood(Likelihood::kInnovation, &options);
   EXPECT_EQ(FamiliesOf(options, kLast),
             (Names{"likelihood", "priors", "pooling", "network prior"}));
@@ -128,7 +128,7 @@ TEST(FitProblem, FamiliesOfAStage) {
 TEST(FitProblem, BlocksFollowTheTable) {
   const auto recordings = MakePendulums(TinyStudy());
   FitOptions options = MakePreset("tail").value();
-  SetSelfForce(SelfForceKind::kLinear, &options);
+  options.self_force = SelfForceKind::kLinear;
   const FitProblem problem(recordings, options);
   FitPoint point = problem.NominalPoint();
   const FitProblem::Built built = problem.Build(&point, 0);
