@@ -211,7 +211,7 @@ void AddLearnedPair(const PairShape& shape, const T* weights, const Pair& pair,
   force->acts = true;
 }
 
-// "none", "mlp:4", "gru:8", "ldp:256:32" (hidden size, embedding).
+// "none", "mlp:4", "ldp:256:32" (hidden size, embedding).
 std::string NetworkName(const NetworkShape& shape);
 
 struct LearnedTerms {

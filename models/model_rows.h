@@ -12,26 +12,10 @@
   X(kAnisotropic, "anisotropic", kMuY, LinearDrag) \
   X(kCoulomb, "coulomb", kMu, CoulombDrag)
 
-// What --self_force names: at most one law and at most one network.
-//
-// Law(id, name, first, last, note): a law of closed form (self_terms.h).
+// Law(id, name, first, last, note): a law of closed form that --self_force names (self_terms.h).
 //   first, last  its parameters, which are zero where it does not act and are freed where it does
 //   note         for the help
-// Network(id, name, gates, recurrent, cell, biased, Kind): a kind of network (self_network.h).
-//   gates      rows [W U C] per hidden unit
-//   recurrent, cell  whether it remembers its hidden units, and cells besides
-//   biased     whether it has LDP's biases, so that a person at rest may feel a force
-//   Kind       its formula (MlpCell in self_network.h) and, where large ones are to be fitted, its
-//              derivatives by hand (ActivateMlp and DeactivateMlp in residuals/adjoint/)
-// clang-format off
-#define PUSHID_SELF_FORCES(Law, Network) \
-  Law(kLinear, "linear", kAx, kDq, "cross terms, quadratic") \
-  Network(kMlp, "mlp", 1, false, false, false, Mlp) \
-  Network(kGru, "gru", 2, true, false, false, Gru) \
-  Network(kLstm, "lstm", 3, true, true, false, Lstm) \
-  Network(kLdp, "ldp", 4, true, true, true, Ldp)
-// clang-format on
-#define PUSHID_NO_SELF_FORCE(...)  // for tables of the other kind alone
+#define PUSHID_SELF_FORCES(Law) Law(kLinear, "linear", kAx, kDq, "cross terms, quadratic")
 
 // What --interaction names: terms that add up, each a flag of InteractionTerms (options.h) and a
 // formula (interaction.h).

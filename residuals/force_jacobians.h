@@ -3,7 +3,7 @@
 // large networks (adjoint/step_adjoint.h). Everything else is differentiated by jets. These stay
 // because they pay: the self force's take a thirtieth of the time that dual numbers need, the
 // tail's two fifths (tests/benchmarks, Jacobian_OfSelfForce, Jacobian_OfTail); a whole fit of
-// people alone less than half of that of jets (speed.py derivatives), one with gru:32 two fifths.
+// people alone less than half of that of jets (speed.py derivatives).
 // Tests hold them against automatic ones.
 #pragma once
 

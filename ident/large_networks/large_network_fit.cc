@@ -210,7 +210,7 @@ std::shared_ptr<const LearnedTerms> LargeNetworkSolution::Network(LearnedTerms l
 
 LargeNetworkOptions OptionsFor(const LearnedTerms& learned) {
   LargeNetworkOptions options;
-  if (learned.shape.biased()) options.rate = options.last_rate = 3e-4;
+  if (learned.shape.ldp()) options.rate = options.last_rate = 3e-4;
   return options;
 }
 

@@ -86,18 +86,17 @@ Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& te
   NetworkShape shape;
   shape.kind = parts.empty() ? NetworkKind::kNone
                              : FromName<NetworkKind>(parts[0]).value_or(NetworkKind::kNone);
-  shape.hidden = shape.biased() ? kLdpHidden : kDefaultHidden;
-  const bool known =
-      shape.any() && text.back() != ':' && parts.size() <= (shape.recurrent() ? 3 : 2);
-  if (shape.biased()) shape.embedding = kLdpEmbedding;  // which takes the mass
+  shape.hidden = shape.ldp() ? kLdpHidden : kDefaultHidden;
+  const bool known = shape.any() && text.back() != ':' && parts.size() <= (shape.ldp() ? 3 : 2);
+  if (shape.ldp()) shape.embedding = kLdpEmbedding;  // which takes the mass
   if (parts.size() > 1) shape.hidden = Size(parts[1]);
   if (parts.size() > 2) shape.embedding = Size(parts[2]);
   if (known && shape.hidden > 0 && (parts.size() < 3 || shape.embedding > 0)) return shape;
   std::vector<std::string> words = AllNames<SelfForceKind>();
-  for (const std::string& example : NetworkExamples()) words.push_back(example);
+  for (const char* network : {"mlp:4", "ldp:256:32"}) words.push_back(network);
   return Error{flag + " is '" + text + "'; it must be " + Listed(words, "or") +
-               " (hidden size, embedding; 1 to " + std::to_string(kLargestSize) +
-               "), or linear and a network, as linear,gru:4"};
+               " (hidden size, of ldp an embedding; 1 to " + std::to_string(kLargestSize) +
+               "), or linear and a network, as linear,mlp:4"};
 }
 
 // Rows [W b] of hidden layers.
@@ -167,19 +166,6 @@ std::string StanceViolation(const FitOptions& o) {
 }
 
 }  // namespace
-
-std::vector<std::string> NetworkExamples() {
-  std::vector<std::string> examples;
-  std::string recurrent, ldp;
-  for (const NetworkKindRow& row : kNetworkKinds) {
-    if (row.value == NetworkKind::kNone) continue;
-    (row.biased ? ldp : recurrent) = row.name;
-    if (!row.biased) examples.push_back(row.name + std::string(":4"));
-  }
-  examples.push_back(ldp + ":256:32");
-  examples.push_back(recurrent + ":256:32");
-  return examples;
-}
 
 Result<SelfForceChoice> ParseSelfForce(const std::string& flag, const std::string& text) {
   SelfForceChoice choice;
@@ -272,12 +258,9 @@ std::vector<double> InitialWeights(const NetworkShape& shape, uint64_t seed) {
     for (int i = first; i < last; ++i) weights[i] = random.Normal() / std::sqrt(fan_in);
   };
   fill(0, shape.gates_at(), shape.embed_width());
-  fill(shape.gates_at(), shape.candidates_at(), shape.gate_width());
-  fill(shape.candidates_at(), shape.output_at(), std::max(1, shape.candidate_width()));
-  if (shape.cells() > 0) {
-    for (int row = shape.hidden; row < 2 * shape.hidden; ++row) {
-      weights[shape.gates_at() + (row + 1) * shape.gate_width() - 1] += kOpenForgetGate;
-    }
+  fill(shape.gates_at(), shape.output_at(), shape.gate_width());
+  for (int row = shape.cells(); row < 2 * shape.cells(); ++row) {
+    weights[shape.gates_at() + (row + 1) * shape.gate_width() - 1] += kOpenForgetGate;
   }
   return weights;
 }
@@ -324,8 +307,8 @@ std::shared_ptr<const LearnedTerms> LearnedFromJson(const Json& json) {
   if (!network->any()) throw std::runtime_error("network: nothing is learned");
   CheckRod(network->rod);
   if (json.contains("interaction")) CheckPair(network->pair);
-  if (s.hidden < (s.any() ? 1 : 0) || s.hidden > kLargestSize || s.embedding < s.biased() ||
-      s.embedding > kLargestSize) {
+  if (s.hidden < (s.any() ? 1 : 0) || s.hidden > kLargestSize || s.embedding < s.ldp() ||
+      s.embedding > (s.ldp() ? kLargestSize : 0)) {
     throw std::runtime_error("network: sizes must lie between 1 and " +
                              std::to_string(kLargestSize));
   }

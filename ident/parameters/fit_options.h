@@ -1,12 +1,11 @@
 // ident: what a fit is asked to do, and of that first what a model learns (a self force, a law of
 // the rod, an interaction), as words of a command line, as first weights, and as JSON.
 //
-//   mlp:4, gru:8, lstm:16           kind and hidden size (4 where it is left out)
-//   lstm:256:32                     with an embedding of 32 before it
-//   ldp:256:32                      LDP's, with biases and the mass; it always has an embedding
+//   mlp:4                           kind and hidden size (4 where it is left out)
+//   ldp:256:32                      LDP's, with biases, the mass and an embedding
 //   constant, linear, mlp:4, ldp:128-128                          a law of the rod
 //   network:8-8, ldp_network:512-512, among the terms of an interaction    hidden sizes
-// JSON: {"kind": "gru", "hidden": 8, "embedding": 0,
+// JSON: {"kind": "mlp", "hidden": 8, "embedding": 0,
 //        "rod": {"kind": "mlp", "hidden": [4]}, "interaction": {"hidden": [4], "ldp": false},
 //        "weights": [...]}
 // weights: the flat array of models/learned_terms.h, without loss. Kind none, and no interaction,
@@ -33,15 +32,13 @@ namespace pushid {
 inline constexpr int kLargestSize = 4096;  // of a layer
 inline constexpr size_t kMostLayers = 8;
 
-// The value of --self_force: none, linear, a network, or "linear,gru:4". What is not named is none.
+// The value of --self_force: none, linear, a network, or "linear,mlp:4". What is not named is none.
 struct SelfForceChoice {
   SelfForceKind kind = SelfForceKind::kNone;
   NetworkShape network;
 };
 Result<SelfForceChoice> ParseSelfForce(const std::string& flag, const std::string& text);
 std::string SelfForceText(SelfForceKind kind, const LearnedTerms* network);
-// One of each kind of network, and one with an embedding at the end, for help and messages.
-std::vector<std::string> NetworkExamples();
 
 // The value of --rod.
 Result<RodShape> ParseRod(const std::string& flag, const std::string& text);
@@ -55,11 +52,11 @@ struct InteractionChoice {
 Result<InteractionChoice> ParseInteraction(const std::string& flag, const std::string& text);
 std::string InteractionText(const ModelOptions& options);
 
-// "gru:4", "rod linear", "gru:4 and rod mlp:4", "interaction network:4".
+// "mlp:4", "rod linear", "mlp:4 and rod mlp:4", "interaction network:4".
 std::string LearnedName(const LearnedTerms& network);
 
 // Random hidden weights (variance 1 / inputs of the unit) and no output: no force and a rod that
-// stays, but gradients to leave that by. The forget gates of an LSTM start open.
+// stays, but gradients to leave that by. The forget gates of LDP's LSTM start open.
 std::vector<double> InitialWeights(const NetworkShape& shape, uint64_t seed);
 std::shared_ptr<const LearnedTerms> InitialNetwork(const NetworkShape& shape, uint64_t seed,
                                                    const RodShape& rod = {},
@@ -85,7 +82,7 @@ constexpr EnumNames<ClusterBy, 3> Names(ClusterBy) {
 }
 
 struct FitOptions {
-  std::string preset = "tail";                      // it was made from (presets.h)
+  std::string preset = "tail";  // it was made from (presets.h)
   SelfForceKind self_force = SelfForceKind::kNone;
   ModelOptions model;
   ParameterTable table;

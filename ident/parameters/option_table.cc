@@ -253,11 +253,9 @@ std::string SelfForceHelp() {
     if (law.value != SelfForceKind::kNone)
       text += law.name + (" (" + std::string(law.note)) + "), ";
   }
-  std::vector<std::string> examples = NetworkExamples();
-  const std::string embedding = examples.back();
-  examples.pop_back();
-  return text + "a network by kind and hidden size (" + Listed(examples, ",") + "; " + embedding +
-         " with an embedding), or linear and a network, comma-separated";
+  return text +
+         "a network by kind and hidden size (mlp:4, or LDP's ldp:256:32 with its embedding), or "
+         "linear and a network, comma-separated";
 }
 
 Row SelfForceRow() {

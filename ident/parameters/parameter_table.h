@@ -54,7 +54,7 @@ struct ParameterSpec {
 // Which law of self forces is fitted beyond balance, friction and the preset's own
 // (PUSHID_SELF_FORCES).
 #define PUSHID_LAW(id, ...) id,
-enum class SelfForceKind { kNone, PUSHID_SELF_FORCES(PUSHID_LAW, PUSHID_NO_SELF_FORCE) };
+enum class SelfForceKind { kNone, PUSHID_SELF_FORCES(PUSHID_LAW) };
 #undef PUSHID_LAW
 
 struct SelfForceLaw {
@@ -65,7 +65,7 @@ struct SelfForceLaw {
 };
 inline constexpr SelfForceLaw kSelfForces[] = {{"none", SelfForceKind::kNone, 0, -1, ""},
 #define PUSHID_LAW(id, name, ...) {name, SelfForceKind::id, __VA_ARGS__},
-                                               PUSHID_SELF_FORCES(PUSHID_LAW, PUSHID_NO_SELF_FORCE)
+                                               PUSHID_SELF_FORCES(PUSHID_LAW)
 #undef PUSHID_LAW
 };
 static_assert(RowsAreInOrder(kSelfForces));

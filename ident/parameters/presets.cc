@@ -279,7 +279,7 @@ void SetStance(Stance stance, FitOptions* options) {
   if (stance == Stance::kFixed) return SetFixed(options);
   options->model.push = PushUse::kAsRecorded;
   options->model.directions = Directions::kAxes;  // the feet's support has a front
-  options->self_force = SelfForceKind::kNone;    // those act on feet that slide
+  options->self_force = SelfForceKind::kNone;     // those act on feet that slide
   const NamedPreset* preset = FindPreset(options->preset);
   if (preset != nullptr && preset->pooled_where_feet_step != nullptr) {
     options->pool = preset->pooled_where_feet_step;

@@ -91,28 +91,22 @@ double SecondsUntilStill(const std::vector<Scene>& scenes, const ModelOptions& o
 }
 
 // The free state about rest: [theta, phi, qd], the cart's velocity one step earlier (of which the
-// cart's derivative is made), and what is learned of the rod and a network's memory.
-constexpr int kPreviousAt = 6, kRodAt = 8, kMemoryAt = 9;
+// cart's derivative is made), and the rod's length. LDP's networks, which remember, have no rest.
+constexpr int kPreviousAt = 6, kRodAt = 8, kFreeState = 9;
 
 // One step of what is learned, about rest, by central differences (it is smooth, and its values are
-// of order one): d[force; rod's velocity; memory]/d(free state).
+// of order one): d[force; rod's velocity]/d(free state).
 Eigen::MatrixXd LearnedStep(const LearnedTerms& network, const SelfForce& self,
                             const ParameterSet<double>& parameters) {
   constexpr double kDifference = 1e-5;
   const NetworkShape& shape = network.shape;
-  const int hidden = shape.recurrent() ? shape.hidden : 0;
-  const int cells = shape.cells();
   const auto step = [&](const Eigen::VectorXd& from) {
     const Vector4<double> qd = from.segment<4>(2);
-    Eigen::VectorXd to = Eigen::VectorXd::Zero(5 + hidden + cells);
+    Eigen::VectorXd to = Eigen::VectorXd::Zero(5);
     if (shape.any()) {
       NetworkState<double> memory(shape, self.body);
-      if (hidden > 0) memory.hidden = from.segment(kMemoryAt, hidden);
-      if (cells > 0) memory.cell = from.tail(cells);
       SetNetworkInputs<double>(from[0], from[1], qd, &memory);
       to.head<4>() = StepNetwork(shape, network.weights.data(), self.body.mass, &memory);
-      if (hidden > 0) to.segment(5, hidden) = memory.hidden;
-      if (cells > 0) to.tail(cells) = memory.cell;
     }
     if (network.rod.moves()) {
       const PendulumState<double> state{{0.0, 0.0, from[0], from[1]}, qd, from[kRodAt]};
@@ -125,9 +119,9 @@ Eigen::MatrixXd LearnedStep(const LearnedTerms& network, const SelfForce& self,
     }
     return to;
   };
-  Eigen::MatrixXd jacobian(5 + hidden + cells, kMemoryAt + hidden + cells);
-  for (int i = 0; i < jacobian.cols(); ++i) {
-    const Eigen::VectorXd move = kDifference * Eigen::VectorXd::Unit(jacobian.cols(), i);
+  Eigen::MatrixXd jacobian(5, kFreeState);
+  for (int i = 0; i < kFreeState; ++i) {
+    const Eigen::VectorXd move = kDifference * Eigen::VectorXd::Unit(kFreeState, i);
     jacobian.col(i) = (step(move) - step(-move)) / (2.0 * kDifference);
   }
   return jacobian;
@@ -191,15 +185,15 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
   const Eigen::Matrix4d inverse =
       InverseMassMatrix<double>(at_rest, Angles<double>(), at_rest.mass + scene.dt * rest.ground);
   for (int i = 0; i < 2; ++i) rest.by_state(i, 2 + i) -= rest.ground;
-  Eigen::MatrixXd learned = Eigen::MatrixXd::Zero(5, kMemoryAt);
+  Eigen::MatrixXd learned = Eigen::MatrixXd::Zero(5, kFreeState);
   const auto& network = options.learned;
   // LDP's networks have no rest: their simulations tell.
-  if (network != nullptr && !network->shape.biased() && !network->rod.biased()) {
+  if (network != nullptr && !network->shape.ldp() && !network->rod.biased()) {
     learned = LearnedStep(*options.learned, self, parameters);
   }
   std::optional<LateVelocity> of_past;
   if (late) of_past.emplace(options, parameters, self, scene.dt * inverse, scene.dt);
-  const Eigen::Index known = learned.cols(), memory = known - kMemoryAt;
+  const Eigen::Index known = kFreeState;
   const Eigen::Index past = late ? of_past->by_past.cols() : 0, size = known + past;
   Eigen::MatrixXd step = Eigen::MatrixXd::Zero(size, size);
   auto velocity = step.middleRows<4>(2);
@@ -222,7 +216,6 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
     step.row(kRodAt).head(known) = scene.dt * learned.row(4);
     step(kRodAt, kRodAt) += 1.0;
   }
-  step.block(kMemoryAt, 0, memory, known) = learned.bottomRows(memory);
   return std::log(SpectralRadius(step)) / scene.dt;
 }
 

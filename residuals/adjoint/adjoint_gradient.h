@@ -64,7 +64,7 @@ class AdjointGradient {
 
   // Equal arguments give equal bits. by_shared and by_weight: overwritten; null where
   // not wanted. One call at a time: everything that a rollout leaves behind is kept in the object
-  // (8 kB a person and frame for lstm:256:32, 17 for its gradient; 17 kB for each of two people and
+  // (8 kB a person and frame for ldp:256:32, 17 for its gradient; 17 kB for each of two people and
   // frame in which they touch for an interaction network:512-512).
   AdjointCost Evaluate(const double* shared, const double* weights, double* by_shared,
                        double* by_weight);

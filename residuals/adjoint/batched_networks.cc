@@ -31,20 +31,6 @@ auto LogisticSlopes(const A& a) {
   return a * (1.0 - a);
 }
 
-// The candidates' rows [W U] in the stacked matrix, below those of the gates: of a network with
-// cells in one piece, of the others W above U, because a gate scales what U makes of h.
-// visit(row, first column, columns)
-template <typename Visit>
-void ForCandidates(const NetworkShape& s, Visit visit) {
-  if (s.candidate_rows() == 0) return;
-  if (s.cells() > 0) {
-    visit(s.gate_rows(), 0, s.candidate_width());
-  } else {
-    visit(s.gate_rows(), 0, s.num_features());
-    visit(s.gate_rows() + s.hidden, s.num_features(), s.hidden);
-  }
-}
-
 }  // namespace
 
 BatchedNetwork::BatchedNetwork(const NetworkShape& shape, const BatchColumns& columns,
@@ -60,13 +46,12 @@ BatchedNetwork::BatchedNetwork(const NetworkShape& shape, const BatchColumns& co
     own_.col(n) = NetworkState<double>(shape, Body{masses[n]}).context;
     context_.col(n) = shape.GateContext(own_.col(n));
   }
-  int rows = shape.gate_rows();
-  ForCandidates(shape, [&](int, int, int) { rows += shape.hidden; });
-  stacked_.resize(rows, shape.candidate_width());
+  const int rows = shape.gate_rows();
+  stacked_.resize(rows, shape.gate_inputs());
   context_sum_.resize(rows, people);
   by_context_sum_.resize(rows, people);
   inputs_.resize(shape.embed_width(), total);
-  z_.setZero(shape.candidate_width(), total);
+  z_.setZero(shape.gate_inputs(), total);
   activations_.resize(rows, total);
   hidden_.resize(shape.hidden, total);
   outputs_.resize(4, total);
@@ -80,17 +65,12 @@ BatchedNetwork::BatchedNetwork(const NetworkShape& shape, const BatchColumns& co
 void BatchedNetwork::Start(const double* weights) {
   weights_ = weights;
   const NetworkWeights<double> w = Weights();
-  stacked_.setZero();
-  stacked_.topRows(shape_.gate_rows()) = w.gates;
-  ForCandidates(shape_, [&](int row, int first, int columns) {
-    stacked_.block(row, first, shape_.hidden, columns) = w.candidates.middleCols(first, columns);
-  });
+  stacked_ = w.gates;
   // Apart from the product of every step: a person at rest must feel no force, not even by
   // rounding.
-  context_sum_.setZero();
-  context_sum_.topRows(shape_.gate_rows()) = w.context * context_;
+  context_sum_ = w.context * context_;
   by_context_sum_.setZero();
-  if (!shape_.recurrent()) rest_ = context_sum_.array().tanh();
+  if (!shape_.ldp()) rest_ = context_sum_.array().tanh();
   hidden_carry_.setZero();
   cell_carry_.setZero();
 }
@@ -100,15 +80,11 @@ void BatchedNetwork::Forward(int step, const Columns& inputs, Columns* forces) {
   const NetworkWeights<double> w = Weights();
   auto seen = At(inputs_, step), z = At(z_, step);
   seen.topRows(kMotionInputs) = inputs;
-  if (shape_.biased()) seen.bottomRows<2>() = own_.leftCols(n);
-  if (shape_.embedding == 0) {
-    z.topRows(nf) = inputs;
-  } else if (shape_.biased()) {
-    z.topRows(nf) = (w.embed * seen).cwiseMax(0.0);
+  seen.bottomRows<2>() = own_.leftCols(n);
+  if (!shape_.ldp()) {
+    z = inputs;
   } else {
-    z.topRows(nf) = (w.embed * seen).array().tanh();
-  }
-  if (shape_.recurrent()) {
+    z.topRows(nf) = (w.embed * seen).cwiseMax(0.0);
     if (step > 0) {
       z.middleRows(nf, h) = At(hidden_, step - 1).leftCols(n);
     } else {
@@ -118,9 +94,9 @@ void BatchedNetwork::Forward(int step, const Columns& inputs, Columns* forces) {
   auto sums = At(activations_, step);
   sums = context_sum_.leftCols(n);
   AddProduct(stacked_, z, sums);
-  Activate(step);
+  shape_.ldp() ? ActivateLdp(step) : ActivateMlp(step);
   *forces = w.output.leftCols(h) * At(hidden_, step);
-  if (shape_.biased()) forces->colwise() += w.output.col(h);
+  if (shape_.ldp()) forces->colwise() += w.output.col(h);
   *forces *= scale_.head(n).asDiagonal();
 }
 
@@ -130,15 +106,7 @@ void BatchedNetwork::ActivateMlp(int step) {
   At(hidden_, step) = a - rest_.leftCols(a.cols());
 }
 
-void BatchedNetwork::ActivateGru(int step) {
-  auto gates = At(activations_, step).topRows(2 * shape_.hidden).array();
-  gates = gates.logistic();
-  auto candidate = Part(activations_, step, 2);
-  candidate = (candidate + Part(activations_, step, 1) * Part(activations_, step, 3)).tanh();
-  At(hidden_, step) = candidate + Part(activations_, step, 0) * (MemoryOf(step) - candidate);
-}
-
-void BatchedNetwork::ActivateLstm(int step) {
+void BatchedNetwork::ActivateLdp(int step) {
   auto gates = At(activations_, step).topRows(3 * shape_.hidden).array();
   gates = gates.logistic();
   auto candidate = Part(activations_, step, 3);
@@ -153,24 +121,9 @@ void BatchedNetwork::ActivateLstm(int step) {
   At(hidden_, step) = Part(activations_, step, 2) * squashed;
 }
 
-void BatchedNetwork::ActivateLdp(int step) { ActivateLstm(step); }
-
 void BatchedNetwork::Forget(int step, int column) {
   for (Columns* of : {&inputs_, &z_, &activations_, &hidden_, &cells_, &cell_tanh_}) {
     if (of->size() > 0) At(*of, step).col(column).setZero();
-  }
-}
-
-void BatchedNetwork::Activate(int step) {
-  switch (shape_.kind) {
-    case NetworkKind::kNone:
-      break;
-#define PUSHID_NETWORK(id, name, gates, recurrent, cell, biased, Kind) \
-  case NetworkKind::id:                                                \
-    Activate##Kind(step);                                              \
-    break;
-      PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK)
-#undef PUSHID_NETWORK
   }
 }
 
@@ -182,21 +135,7 @@ void BatchedNetwork::DeactivateMlp(int step, const Columns& adjoint) {
   a = adjoint.array() * TanhSlopes(a);
 }
 
-void BatchedNetwork::DeactivateGru(int step, const Columns& adjoint) {
-  const auto hidden = adjoint.array();
-  auto keep = Part(activations_, step, 0), reset = Part(activations_, step, 1);
-  auto candidate = Part(activations_, step, 2), recurrent = Part(activations_, step, 3);
-  hidden_carry_.leftCols(hidden.cols()) = hidden * keep;
-  const Eigen::ArrayXXd by_keep = hidden * (MemoryOf(step) - candidate) * LogisticSlopes(keep);
-  candidate = hidden * (1.0 - keep) * TanhSlopes(candidate);
-  keep = by_keep;
-  const Eigen::ArrayXXd by_recurrent = candidate * reset;
-  reset = candidate * recurrent * LogisticSlopes(reset);
-  recurrent = by_recurrent;
-  by_context_sum_.leftCols(hidden.cols()) += At(activations_, step);
-}
-
-void BatchedNetwork::DeactivateLstm(int step, const Columns& adjoint) {
+void BatchedNetwork::DeactivateLdp(int step, const Columns& adjoint) {
   const auto hidden = adjoint.array();
   auto input = Part(activations_, step, 0), forget = Part(activations_, step, 1);
   auto output = Part(activations_, step, 2), candidate = Part(activations_, step, 3);
@@ -216,66 +155,41 @@ void BatchedNetwork::DeactivateLstm(int step, const Columns& adjoint) {
   by_context_sum_.leftCols(hidden.cols()) += At(activations_, step);
 }
 
-void BatchedNetwork::DeactivateLdp(int step, const Columns& adjoint) {
-  DeactivateLstm(step, adjoint);
-}
-
-void BatchedNetwork::Deactivate(int step, const Columns& hidden) {
-  switch (shape_.kind) {
-    case NetworkKind::kNone:
-      break;
-#define PUSHID_NETWORK(id, name, gates, recurrent, cell, biased, Kind) \
-  case NetworkKind::id:                                                \
-    Deactivate##Kind(step, hidden);                                    \
-    break;
-      PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK)
-#undef PUSHID_NETWORK
-  }
-}
-
 void BatchedNetwork::Backward(int step, const Columns& forces, Columns* inputs) {
   const int n = columns_.active(step), h = shape_.hidden, nf = shape_.num_features();
   auto outputs = At(outputs_, step);
   outputs = forces * scale_.head(n).asDiagonal();
   Columns hidden = Weights().output.leftCols(h).transpose() * outputs;
-  // Columns that end here have none from later.
-  if (shape_.recurrent()) hidden += hidden_carry_.leftCols(n);
-  hidden_carry_.leftCols(n).setZero();
-  Deactivate(step, hidden);
-
-  Columns z = Columns::Zero(shape_.candidate_width(), n);
+  if (!shape_.ldp()) {
+    DeactivateMlp(step, hidden);
+  } else {
+    // Columns that end here have none from later.
+    hidden += hidden_carry_.leftCols(n);
+    DeactivateLdp(step, hidden);
+  }
+  Columns z = Columns::Zero(shape_.gate_inputs(), n);
   AddProduct(stacked_.transpose(), At(activations_, step), z);
-  if (shape_.recurrent()) hidden_carry_.leftCols(n) += z.middleRows(nf, h);
-  if (shape_.embedding == 0) {
-    *inputs = z.topRows(nf);
+  if (!shape_.ldp()) {
+    *inputs = z;
     return;
   }
+  hidden_carry_.leftCols(n) = z.middleRows(nf, h);
   auto embedded = At(embedded_, step);
   const auto features = At(z_, step).topRows(nf).array();
-  if (shape_.biased()) {
-    embedded = z.topRows(nf).array() * (features > 0.0).cast<double>();
-  } else {
-    embedded = z.topRows(nf).array() * TanhSlopes(features);
-  }
+  embedded = z.topRows(nf).array() * (features > 0.0).cast<double>();
   *inputs = Weights().embed.leftCols(kMotionInputs).transpose() * embedded;
 }
 
 void BatchedNetwork::AddWeightGradient(double* gradient) {
   const int h = shape_.hidden, rows = shape_.gate_rows();
   Eigen::Map<RowMajor> gates(gradient + shape_.gates_at(), rows, shape_.gate_width());
-  AddProduct(z_, activations_.topRows(rows).transpose(), gates.leftCols(z_.rows()).transpose());
-  gates.rightCols<2>() += by_context_sum_.topRows(rows) * context_.transpose();
-  Eigen::Map<RowMajor> candidates(gradient + shape_.candidates_at(), shape_.candidate_rows(),
-                                  shape_.candidate_width());
-  ForCandidates(shape_, [&](int row, int first, int columns) {
-    AddProduct(z_.middleRows(first, columns), activations_.middleRows(row, h).transpose(),
-               candidates.middleCols(first, columns).transpose());
-  });
+  AddProduct(z_, activations_.transpose(), gates.leftCols(z_.rows()).transpose());
+  gates.rightCols<2>() += by_context_sum_ * context_.transpose();
   Eigen::Map<RowMajor>(gradient, shape_.embedding, shape_.embed_width()) +=
       embedded_ * inputs_.transpose();
   Eigen::Map<RowMajor> output(gradient + shape_.output_at(), 4, shape_.output_width());
   output.leftCols(h) += outputs_ * hidden_.transpose();
-  if (shape_.biased()) output.col(h) += outputs_.rowwise().sum();
+  if (shape_.ldp()) output.col(h) += outputs_.rowwise().sum();
 }
 
 BatchedLayers::BatchedLayers(const RodShape& shape)

@@ -37,15 +37,12 @@ class BatchColumns {
   std::vector<int> first_ = {0};  // column of each step, and the total
 };
 
-// A self-force network (models/self_network.h). With Z = [x; h] and the rows of all gates and
-// candidates stacked to W,
+// A self-force network (models/self_network.h). With Z = [x; h] and W the rows of all gates,
 //   S = W Z + C k,  activations a(S), memories and outputs by element,
 // and backwards, with D = d(cost)/dS from the adjoints of outputs and memories,
 //   Z^ = W' D,   W^ = sum over steps D Z' = one product over all (people x steps).
 // Z, activations and cells of every step are kept.
 // Of an ldp network, whose gates are all biased, k is 1 and 1, and its mass goes to the embedding.
-// A GRU multiplies U_n h by r: there W has the rows [W_n 0] and [0 U_n] in place of [W_n U_n], a
-// third more work, for one product instead of three.
 class BatchedNetwork {
  public:
   using Columns = Eigen::MatrixXd;
@@ -75,19 +72,13 @@ class BatchedNetwork {
   auto Part(Columns& of, int step, int k) const {
     return At(of, step).middleRows(k * shape_.hidden, shape_.hidden).array();
   }
-  auto MemoryOf(int step) {
-    return At(z_, step).middleRows(shape_.num_features(), shape_.hidden).array();
-  }
   NetworkWeights<double> Weights() const { return {shape_, weights_}; }
   // From the sums of a step, in activations_, to the hidden units; and from d(cost)/dh to D in
   // activations_ and to the carried adjoint's direct part.
-#define PUSHID_NETWORK(id, name, gates, recurrent, cell, biased, Kind) \
-  void Activate##Kind(int step);                                       \
-  void Deactivate##Kind(int step, const Columns& hidden);
-  PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK)
-#undef PUSHID_NETWORK
-  void Activate(int step);
-  void Deactivate(int step, const Columns& hidden);
+  void ActivateMlp(int step);
+  void DeactivateMlp(int step, const Columns& hidden);
+  void ActivateLdp(int step);
+  void DeactivateLdp(int step, const Columns& hidden);
 
   NetworkShape shape_;
   BatchColumns columns_;

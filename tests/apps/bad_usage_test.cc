@@ -36,7 +36,7 @@ TEST_F(BadUsageTest, FitFlags) {
       {{"--preset=best"}, {"--preset", "'best'", "tail, robot, ldp, ldp_published"}},
       {{"--self_force=rnn"}, {"--self_force", "'rnn'"}},
       {{"--self_force=mlp:0"}, {"--self_force", "'mlp:0'"}},
-      {{"--self_force=mlp:4,gru:4"}, {"--self_force", "more than one network"}},
+      {{"--self_force=mlp:4,ldp:4"}, {"--self_force", "more than one network"}},
       {{"--self_force=mlp:2", "--network_prior=-1"}, {"--network_prior", "at least 0"}},
       {{"--posture=lying"}, {"--posture", "'lying'"}},
       {{"--push_tail=long"}, {"--push_tail", "'long'"}},

@@ -118,20 +118,22 @@ void NetworkSolve(benchmark::State& state, const char* self_force) {
 }
 
 void RegisterAll() {
-  for (const char* self_force : {"none", "mlp:4", "gru:4", "gru:8", "gru:16"}) {
+  for (const char* self_force : {"none", "mlp:4", "mlp:16", "ldp:8:4"}) {
     const std::string name = self_force;
     benchmark::RegisterBenchmark(("PersonStep/" + name).c_str(), PersonStep, self_force)
         ->Unit(benchmark::kMicrosecond);
     benchmark::RegisterBenchmark(("NetworkJacobian/" + name).c_str(), NetworkJacobian, self_force)
         ->Unit(benchmark::kMillisecond);
   }
-  benchmark::RegisterBenchmark("NetworkJacobianByJets/4/gru:8", NetworkJacobianByJets<4>, "gru:8")
+  benchmark::RegisterBenchmark("NetworkJacobianByJets/4/mlp:16", NetworkJacobianByJets<4>, "mlp:16")
       ->Unit(benchmark::kMillisecond);
-  benchmark::RegisterBenchmark("NetworkJacobianByJets/16/gru:8", NetworkJacobianByJets<16>, "gru:8")
+  benchmark::RegisterBenchmark("NetworkJacobianByJets/16/mlp:16", NetworkJacobianByJets<16>,
+                               "mlp:16")
       ->Unit(benchmark::kMillisecond);
-  benchmark::RegisterBenchmark("NetworkJacobianByJets/64/gru:8", NetworkJacobianByJets<64>, "gru:8")
+  benchmark::RegisterBenchmark("NetworkJacobianByJets/64/mlp:16", NetworkJacobianByJets<64>,
+                               "mlp:16")
       ->Unit(benchmark::kMillisecond);
-  for (const char* self_force : {"mlp:4", "gru:4", "gru:8"}) {
+  for (const char* self_force : {"mlp:4", "mlp:16"}) {
     benchmark::RegisterBenchmark((std::string("NetworkSolve/") + self_force).c_str(), NetworkSolve,
                                  self_force)
         ->Unit(benchmark::kMillisecond);

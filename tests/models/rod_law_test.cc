@@ -134,7 +134,7 @@ RolloutPath<double> RollStanding(const Scene& scene, const ModelOptions& options
   return path;
 }
 
-const NetworkShape kNoNetwork, kBlind{NetworkKind::kGru, 3}, kMotionMlp{NetworkKind::kMlp, 3};
+const NetworkShape kNoNetwork, kLdps{NetworkKind::kLdp, 3, 2}, kMotionMlp{NetworkKind::kMlp, 3};
 
 TEST(RodLaw, IsSilentAtRest) {
   Random random(72);
@@ -153,7 +153,7 @@ TEST(RodLaw, IsSilentAtRest) {
 TEST(RodLaw, ZeroWeightsAreAConstantRodToTheLastBit) {
   Random random(73);
   const Scene scene = TwoPeople(40.0);
-  for (const NetworkShape& self : {kNoNetwork, kBlind, kMotionMlp}) {
+  for (const NetworkShape& self : {kNoNetwork, kLdps, kMotionMlp}) {
     for (const RodShape& shape : EveryLaw()) {
       const ModelOptions moving = WithRod(shape, self, 0.0, &random);
       auto network = std::make_shared<LearnedTerms>(*moving.learned);

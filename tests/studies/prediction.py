@@ -15,8 +15,8 @@ from studies import number, with_error
 LDP = [("`--preset=ldp`", "--preset=ldp")]
 CHANGES = ["--preset_priors=false", "--posture=upright", "--self_force=linear",
            "--fix=Kp_theta=1500,tail_gain=1,tail_time=0.2", "--push_tail=none"]
-# A gru:8 (as gru:4) and networks trained by their gradient take hours here.
-NETWORKS = ["--self_force=mlp:4 --network_prior=0.5", "--self_force=gru:4", "--self_force=lstm:4", "--rod=linear",
+# Networks trained by their gradient take hours here.
+NETWORKS = ["--self_force=mlp:4 --network_prior=0.5", "--rod=linear",
             "--rod=linear --network_prior=0", "--rod=mlp:4 --network_prior=10"]
 SCHEMES = [("stratified", "5 x 4 folds"), ("subject", "one person"), ("strong", "strong pushes")]
 

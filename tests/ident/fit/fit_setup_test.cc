@@ -71,7 +71,7 @@ TEST(FitSetup, ThePresetPoolsWhatItCan) {
   }
   // A large network is trained beside what units differ in.
   for (const auto& [preset, option, value] :
-       {std::tuple("tail", "self_force", "lstm:64"),
+       {std::tuple("tail", "self_force", "ldp:64"),
         {"group", "interaction", "spring,damping,network:64-64"}}) {
     const FitOptions made = Unwrapped(MakeFitOptions({{"preset", preset}, {option, value}}));
     EXPECT_TRUE(NeedsGradientTraining(made));
@@ -96,7 +96,7 @@ TEST(FitSetup, StanceBringsWhatGoesWithIt) {
     EXPECT_FALSE(holds.table[id].free) << holds.table[id].name;
   }
   for (const auto& [flag, value] :
-       {std::pair("rod", "linear"), std::pair("self_force", "lstm:64")}) {
+       {std::pair("rod", "linear"), std::pair("self_force", "ldp:64")}) {
     EXPECT_TRUE(Contains(Complaint({{"preset", "tail"}, {"stance", "steps"}, {flag, value}}),
                          "is for feet that slide"))
         << flag;

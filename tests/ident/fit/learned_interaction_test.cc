@@ -187,8 +187,8 @@ TEST(LearnedInteraction, ByName) {
   const FitOptions changed =
       MakeFitOptions({{"preset", "ldp_published_groups"}, {"interaction", "contact"}}).value();
   EXPECT_FALSE(changed.model.learned->pair.any());
-  EXPECT_EQ(LearnedName(*InitialNetwork({NetworkKind::kGru, 4}, 1, {RodKind::kLinear, {}}, {{4}})),
-            "gru:4 and rod linear and interaction network:4");
+  EXPECT_EQ(LearnedName(*InitialNetwork({NetworkKind::kMlp, 4}, 1, {RodKind::kLinear, {}}, {{4}})),
+            "mlp:4 and rod linear and interaction network:4");
 }
 
 }  // namespace

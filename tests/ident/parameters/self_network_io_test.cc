@@ -13,8 +13,7 @@ namespace pushid {
 namespace {
 
 TEST(SelfNetworkIo, NamesAreReadAndWritten) {
-  for (const char* text :
-       {"none", "linear", "mlp:4", "gru:8", "lstm:256:32", "ldp:256:32", "linear,gru:4"}) {
+  for (const char* text : {"none", "linear", "mlp:4", "ldp:256:32", "linear,mlp:4"}) {
     const auto choice = ParseSelfForce("--self_force", text);
     ASSERT_TRUE(choice.ok()) << text;
     const LearnedTerms network{choice.value().network, {}};
@@ -24,28 +23,25 @@ TEST(SelfNetworkIo, NamesAreReadAndWritten) {
   EXPECT_EQ(ParseSelfForce("f", "mlp").value().network.hidden, 4);
   EXPECT_EQ(ParseSelfForce("f", "ldp:8").value().network.embedding, 32) << "it takes the mass";
   EXPECT_EQ(NetworkName(ParseSelfForce("f", "ldp").value().network), "ldp:256:32");
-  EXPECT_EQ(ParseSelfForce("f", "gru:4,none,linear,linear").value().kind, SelfForceKind::kLinear);
-  for (const char* text : {"rnn", "mlp:", "mlp:0", "mlp:x", "mlp:4:2", "gru:4:0", "mlp:99999",
-                           "mlp:4,gru:4", "gru:4:2:1", "mlp:-1"}) {
+  EXPECT_EQ(ParseSelfForce("f", "mlp:4,none,linear,linear").value().kind, SelfForceKind::kLinear);
+  for (const char* text : {"rnn", "mlp:", "mlp:0", "mlp:x", "mlp:4:2", "ldp:4:0", "mlp:99999",
+                           "mlp:4,ldp:4", "ldp:4:2:1", "mlp:-1", "gru:4"}) {
     EXPECT_TRUE(Contains(ProblemOf(ParseSelfForce("--self_force", text)), "--self_force"));
   }
 }
 
-// Help and message are made of the rows of model_rows.h.
 TEST(SelfNetworkIo, HelpAndMessageNameEveryKind) {
   EXPECT_EQ(FindFitOption("self_force")->help,
             "additional self force: none, linear (cross terms, quadratic), a network by kind and "
-            "hidden size (mlp:4, gru:4, lstm:4, ldp:256:32; lstm:256:32 with an embedding), or "
-            "linear and a "
-            "network, comma-separated");
+            "hidden size (mlp:4, or LDP's ldp:256:32 with its embedding), or linear and a network, "
+            "comma-separated");
   EXPECT_EQ(ParseSelfForce("f", "rnn").error().ToString(),
-            "f is 'rnn'; it must be none, linear, mlp:4, gru:4, lstm:4, ldp:256:32 or lstm:256:32 "
-            "(hidden size, "
-            "embedding; 1 to 4096), or linear and a network, as linear,gru:4");
+            "f is 'rnn'; it must be none, linear, mlp:4 or ldp:256:32 (hidden size, of ldp an "
+            "embedding; 1 to 4096), or linear and a network, as linear,mlp:4");
 }
 
 TEST(SelfNetworkIo, StartsWithoutForceAndFromItsSeed) {
-  const NetworkShape shape{NetworkKind::kLstm, 3, 2};
+  const NetworkShape shape{NetworkKind::kLdp, 3, 2};
   const std::vector<double> weights = InitialWeights(shape, 5);
   ASSERT_EQ(static_cast<int>(weights.size()), shape.num_weights());
   for (int i = shape.output_at(); i < shape.num_weights(); ++i) EXPECT_EQ(weights[i], 0.0);
@@ -68,7 +64,7 @@ TEST(SelfNetworkIo, RodsAreReadAndWritten) {
 }
 
 TEST(SelfNetworkIo, RodsStartConstantAndBesideTheSelfForce) {
-  const NetworkShape shape{NetworkKind::kGru, 2};
+  const NetworkShape shape{NetworkKind::kMlp, 2};
   const RodShape rod{RodKind::kMlp, {3, 2}};
   const auto both = InitialNetwork(shape, 5, rod);
   const std::vector<double> self = InitialWeights(shape, 5);
@@ -79,14 +75,14 @@ TEST(SelfNetworkIo, RodsStartConstantAndBesideTheSelfForce) {
   }
   EXPECT_NE(both->weights[both->rod_at()], 0.0);
   EXPECT_NE(both->weights[both->rod_at()], self[0]);
-  EXPECT_EQ(LearnedName(*both), "gru:2 and rod mlp:3-2");
+  EXPECT_EQ(LearnedName(*both), "mlp:2 and rod mlp:3-2");
   EXPECT_EQ(LearnedName(*InitialNetwork({}, 5, rod)), "rod mlp:3-2");
 }
 
 TEST(SelfNetworkIo, FilesKeepEverything) {
   const RodShape linear{RodKind::kLinear, {}}, mlp{RodKind::kMlp, {3, 2}};
   for (const LearnedTerms& network :
-       {*InitialNetwork({NetworkKind::kGru, 2, 3}, 1, mlp), *InitialNetwork({}, 2, linear),
+       {*InitialNetwork({NetworkKind::kMlp, 3}, 1, mlp), *InitialNetwork({}, 2, linear),
         *InitialNetwork({}, 3, mlp), *InitialNetwork({NetworkKind::kMlp, 2}, 4),
         *InitialNetwork({NetworkKind::kLdp, 2, 3}, 5, {RodKind::kLdp, {3}}, {{4}, true})}) {
     const auto read = LearnedFromJson(nlohmann::ordered_json::parse(ToJson(network).dump()));

@@ -98,22 +98,6 @@ TEST(Behaviour, FreeModesKnowTheNetwork) {
   EXPECT_GT(std::abs(played - Of(p).fastest_growth), 1e-3);
 }
 
-// A memory is part of the modes: with a GRU whose gates stay half open, what dies out slowest may
-// be the memory itself.
-TEST(Behaviour, FreeModesKnowTheMemory) {
-  LearnedTerms network{{NetworkKind::kGru, 2}, {}};
-  network.weights.assign(network.shape.num_weights(), 0.0);
-  const NetworkShape& s = network.shape;
-  // z = logistic(8): the memory decays by 1 - z = 3.4e-4 a step.
-  for (int row = 0; row < 2; ++row) {
-    network.weights[s.gates_at() + (row + 1) * s.gate_width() - 1] = 8.0;
-  }
-  ModelOptions options = Anisotropic();
-  options.learned = std::make_shared<const LearnedTerms>(network);
-  const double z = 1.0 / (1.0 + std::exp(-8.0));
-  EXPECT_NEAR(ComputeBehaviour(options, FirmParameters()).fastest_growth, 60.0 * std::log(z), 1e-6);
-}
-
 TEST(Behaviour, HarderPushesGoFarther) {
   const Behaviour b = Of(FirmParameters());
   for (int mass = 0; mass < 3; ++mass) {

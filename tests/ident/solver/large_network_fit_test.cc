@@ -14,7 +14,7 @@
 namespace pushid {
 namespace {
 
-constexpr NetworkShape kShape{NetworkKind::kLstm, 16, 8};
+constexpr NetworkShape kShape{NetworkKind::kMlp, 48};
 
 // 24 recordings of people under the published parameters and a network that pushes with up to about
 // 60 N and 60 N m.
@@ -90,8 +90,8 @@ TEST(LargeNetworkFit, LdpsNetworksLearnAtThePublishedRate) {
   LargeNetworkFit fit = planted.Fit(1);
   fit.training = planted.Some(0, 1);
   for (const auto& [kind, rate] :
-       {std::pair(NetworkKind::kLdp, 3e-4), std::pair(NetworkKind::kLstm, 1e-5)}) {
-    fit.model.learned = InitialNetwork({kind, 16, 8}, 1);
+       {std::pair(NetworkKind::kLdp, 3e-4), std::pair(NetworkKind::kMlp, 1e-5)}) {
+    fit.model.learned = InitialNetwork({kind, 16, kind == NetworkKind::kLdp ? 8 : 0}, 1);
     fit.options = OptionsFor(*fit.model.learned);
     fit.options.passes = 1;
     const std::vector<double> moved = Unwrapped(FitLargeNetwork(fit)).weights;

@@ -24,19 +24,13 @@ std::vector<Learned> EveryLearned() {
   std::vector<Learned> all = {{{}, linear},
                               {{}, mlp},
                               {{}, deep},
-                              {{NetworkKind::kGru, 2}, mlp},
+                              {{NetworkKind::kMlp, 2}, mlp},
                               {{NetworkKind::kMlp, 3}, linear},
-                              {{NetworkKind::kLstm, 3, 2}, deep},
+                              {{NetworkKind::kLdp, 3, 2}, deep},
                               {{}, {RodKind::kLdp, {5}}},
                               {{NetworkKind::kLdp, 3, 4}, {RodKind::kLdp, {4, 9, 3}}}};
   for (const NetworkShape& shape : std::vector<NetworkShape>{{NetworkKind::kMlp, 4},
                                                              {NetworkKind::kMlp, 13},
-                                                             {NetworkKind::kMlp, 3, 5},
-                                                             {NetworkKind::kGru, 3},
-                                                             {NetworkKind::kGru, 5, 4},
-                                                             {NetworkKind::kLstm, 3},
-                                                             {NetworkKind::kLstm, 6, 4},
-                                                             {NetworkKind::kLstm, 17, 9},
                                                              {NetworkKind::kLdp, 4, 3},
                                                              {NetworkKind::kLdp, 17, 9}}) {
     all.push_back({shape});
@@ -175,7 +169,7 @@ TEST(AdjointGradient, CountsTheFramesBeforeAFailure) {
 // More people than go side by side, and each gradient alone.
 TEST(AdjointGradient, AddsUpManyRecordings) {
   Random random(63);
-  const ModelOptions options = WithNetwork({NetworkKind::kLstm, 5, 3}, 0.8, &random);
+  const ModelOptions options = WithNetwork({NetworkKind::kMlp, 5}, 0.8, &random);
   const std::vector<PendulumRecording> made =
       SomeRecordings(options, {"", 0.1, 100.0, 0.05, 0.8, 0.0}, &random);
   ParameterMap map = EveryParameterMap({});
@@ -207,7 +201,7 @@ TEST(AdjointGradient, AddsUpManyRecordings) {
 // Values held per person are the gradient's own: the list it was made of may be gone.
 TEST(AdjointGradient, KeepsHeldValues) {
   Random random(66);
-  const ModelOptions options = WithNetwork({NetworkKind::kGru, 2}, 0.5, &random);
+  const ModelOptions options = WithNetwork({NetworkKind::kMlp, 2}, 0.5, &random);
   const std::vector<PendulumRecording> made =
       SomeRecordings(options, {"", 0.1, 100.0, 0.05, 0.5, 0.0}, &random);
   ParameterMap map;
@@ -237,7 +231,7 @@ TEST(AdjointGradient, KnowsAUsersOwnLaw) {
   Random random(65);
   const NetworkRegime regime{"", 0.1, 100.0, 0.05, 0.5, 0.0};
   ModelOptions options =
-      WithNetwork({NetworkKind::kGru, 2}, regime.weight, &random, {RodKind::kLinear, {}});
+      WithNetwork({NetworkKind::kMlp, 2}, regime.weight, &random, {RodKind::kLinear, {}});
   options.own_laws = {
       MakeForceLaw("brake", {{"brake", "b", "m/s^2", 0.1, 0.0, 5.0, 0.1}}, Brake{})};
   ParameterMap map = EveryParameterMap({});
@@ -257,7 +251,7 @@ TEST(AdjointGradient, KnowsAUsersOwnLaw) {
 
 TEST(AdjointGradient, RefusesWhatItDoesNotKnow) {
   Random random(64);
-  ModelOptions options = WithNetwork({NetworkKind::kGru, 2}, 0.5, &random);
+  ModelOptions options = WithNetwork({NetworkKind::kMlp, 2}, 0.5, &random);
   std::vector<PendulumRecording> made =
       SomeRecordings(options, {"", 0.1, 100.0, 0.05, 0.5, 0.0}, &random);
   made[0].id = "freely";

@@ -76,14 +76,14 @@ Model MakeModel(const std::string& terms, const NetworkShape& self, const RodSha
 
 // Contact alone, the network alone, beside contact and beside LDP's terms, and all that is learned.
 std::vector<Model> EveryModel(double weight, Random* random) {
-  const NetworkShape gru{NetworkKind::kGru, 3};
+  const NetworkShape mlp{NetworkKind::kMlp, 3};
   const RodShape rod{RodKind::kLinear, {}};
-  std::vector<Model> models = {MakeModel("spring,damping", gru, {}, {}, weight, random),
+  std::vector<Model> models = {MakeModel("spring,damping", mlp, {}, {}, weight, random),
                                MakeModel("", {}, {}, {{4}}, weight, random),
                                MakeModel("spring,damping", {}, {}, {{4}}, weight, random),
                                MakeModel("spring,damping", {}, {}, {{13, 6, 9}}, weight, random),
                                MakeModel("damping", {}, {}, {{3, 2}}, weight, random),
-                               MakeModel("spring,damping", gru, rod, {{5}}, weight, random),
+                               MakeModel("spring,damping", mlp, rod, {{5}}, weight, random),
                                MakeModel("ldp_published", {NetworkKind::kLdp, 3, 2},
                                          {RodKind::kLdp, {3}}, {{5, 4}, true}, weight, random)};
   models[3].options.push = PushUse::kAsRecorded;

@@ -7,9 +7,7 @@ namespace pushid {
 namespace {
 
 std::vector<NetworkShape> EveryNetwork() {
-  return {{NetworkKind::kMlp, 4},    {NetworkKind::kMlp, 1},  {NetworkKind::kGru, 3},
-          {NetworkKind::kGru, 2, 3}, {NetworkKind::kLstm, 3}, {NetworkKind::kLstm, 2, 4},
-          {NetworkKind::kLdp, 3, 4}};
+  return {{NetworkKind::kMlp, 4}, {NetworkKind::kMlp, 1}, {NetworkKind::kLdp, 3, 4}};
 }
 
 class NetworkTwins : public testing::TestWithParam<Regime> {};
@@ -53,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(ThreeRegimes, NetworkTwins,
 TEST(LearnedTerms, IsSilentAtRest) {
   Random random(52);
   for (const NetworkShape& shape : EveryNetwork()) {
-    if (shape.biased()) continue;
+    if (shape.ldp()) continue;
     const ModelOptions options = WithNetwork(shape, 3.0, &random);
     NetworkState<double> state(shape, {60.0, 0.9, 0.0});
     for (int t = 0; t < 20; ++t) {
@@ -98,16 +96,11 @@ TEST(LearnedTerms, LdpsByHand) {
 }
 
 TEST(LearnedTerms, SizesAndNames) {
-  const NetworkShape mlp{NetworkKind::kMlp, 4}, gru{NetworkKind::kGru, 8},
-      lstm{NetworkKind::kLstm, 256, 32}, ldp{NetworkKind::kLdp, 256, 32};
+  const NetworkShape mlp{NetworkKind::kMlp, 4}, ldp{NetworkKind::kLdp, 256, 32};
   EXPECT_EQ(mlp.num_weights(), 4 * (6 + 2) + 4 * 4);
-  EXPECT_EQ(gru.num_weights(), 16 * (6 + 8 + 2) + 8 * (6 + 8) + 4 * 8);
-  EXPECT_EQ(lstm.num_weights(), 32 * 6 + 768 * (32 + 256 + 2) + 256 * (32 + 256) + 4 * 256);
   EXPECT_EQ(ldp.num_weights(), 298244) << "of the paper";
   EXPECT_EQ(NetworkName(ldp), "ldp:256:32");
   EXPECT_EQ(NetworkName(mlp), "mlp:4");
-  EXPECT_EQ(NetworkName(gru), "gru:8");
-  EXPECT_EQ(NetworkName(lstm), "lstm:256:32");
   EXPECT_EQ(NetworkName({}), "none");
 }
 
@@ -122,8 +115,7 @@ std::vector<Learned> EveryLearned() {
           {mlp, {}},
           {deep, {}},
           {linear, {NetworkKind::kMlp, 2}},
-          {mlp, {NetworkKind::kGru, 2}},
-          {mlp, {NetworkKind::kLstm, 2, 3}},
+          {mlp, {NetworkKind::kLdp, 2, 3}},
           {{RodKind::kLdp, {3, 2}}, {}},
           {{RodKind::kLdp, {3}}, {NetworkKind::kLdp, 2, 3}}};
 }
