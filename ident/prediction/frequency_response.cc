@@ -32,12 +32,8 @@ double Spread(const std::vector<double>& x) {
 }
 
 // Bins from 0 Hz to half the rate.
-ArrayXcd Transformed(const std::vector<double>& x, int first, const Segmenting& segments) {
-  const int frames = segments.frames;
-  Eigen::VectorXd segment = Part(x, first, frames) - Part(x, first, frames).mean();
-  for (int t = 0; t < frames && !segments.periodic; ++t) {
-    segment[t] *= 0.5 - 0.5 * std::cos(2.0 * M_PI * t / frames);
-  }
+ArrayXcd Transformed(const std::vector<double>& x, int first, int frames) {
+  const Eigen::VectorXd segment = Part(x, first, frames) - Part(x, first, frames).mean();
   Eigen::VectorXcd bins;
   Eigen::FFT<double>().fwd(bins, segment);
   return bins.head(frames / 2 + 1);
@@ -70,16 +66,12 @@ int PeriodOf(const std::vector<double>& series) {
   return best;
 }
 
-Segmenting SegmentsOf(const std::vector<double>& input, double dt) {
-  const int frames = static_cast<int>(input.size());
-  if (const int period = PeriodOf(input); period > 0) {
-    const bool twice = frames / period == 2;
-    const int used = twice ? period + period / 2 : (frames / period - 1) * period;
-    return {period, frames - used, twice ? period / 2 : period, true};
-  }
-  const double seconds = std::clamp(2.0 * frames * dt / 10.0, 4.0, 30.0);
-  const int segment = static_cast<int>(std::lround(seconds / dt));
-  return {frames < 2 * segment ? 0 : segment, 0, segment / 2, false};  // at least three
+Segmenting SegmentsOf(const std::vector<double>& input) {
+  const int frames = static_cast<int>(input.size()), period = PeriodOf(input);
+  if (period == 0) return {};
+  const bool twice = frames / period == 2;
+  const int used = twice ? period + period / 2 : (frames / period - 1) * period;
+  return {period, frames - used, twice ? period / 2 : period};
 }
 
 void CrossSpectra::Add(const CrossSpectra& other) {
@@ -99,11 +91,11 @@ double CrossSpectra::Coherence(int bin) const {
   return power > 0.0 ? std::norm(yu[bin]) / power : 0.0;
 }
 
-std::vector<int> CrossSpectra::CoherentBins(bool periodic) const {
+std::vector<int> CrossSpectra::CoherentBins() const {
   std::vector<int> bins;
   if (averages <= 1.0) return bins;  // of a single segment it is 1, whatever it holds
   const double by_chance = std::max(0.3, 1.0 - std::pow(0.05, 1.0 / (averages - 1.0)));
-  const double least = (periodic ? 1e-4 : 1e-6) * uu.tail(uu.size() - 1).maxCoeff();
+  const double least = 1e-4 * uu.tail(uu.size() - 1).maxCoeff();
   for (int i = 1; i < uu.size(); ++i) {
     if (uu[i] > least && Coherence(i) > by_chance) bins.push_back(i);
   }
@@ -117,85 +109,51 @@ CrossSpectra CrossSpectraOf(const std::vector<double>& input, const std::vector<
   CrossSpectra spectra{1.0 / (frames * dt), 0.0, none, none, none.cast<std::complex<double>>()};
   int count = 0;
   for (int first = segments.first; first + frames <= end; first += segments.step, ++count) {
-    const ArrayXcd u = Transformed(input, first, segments);
-    const ArrayXcd y = Transformed(output, first, segments);
+    const ArrayXcd u = Transformed(input, first, frames);
+    const ArrayXcd y = Transformed(output, first, frames);
     spectra.uu += u.abs2();
     spectra.yy += y.abs2();
     spectra.yu += y * u.conjugate();
   }
-  // Overlapping by half under Hann's window, 11 segments are as good as 9 independent ones.
-  spectra.averages = segments.periodic ? 1.0 + (count - 1.0) * segments.step / frames
-                     : count < 2       ? count
-                                       : 9.0 / 11.0 * count;
+  spectra.averages = 1.0 + (count - 1.0) * segments.step / frames;
   return spectra;
 }
 
 namespace {
 
-// What moves a person on and on, not as pushes of a fraction of a second.
+// What moves people on and on.
 struct ContinuousInput {
   Disturbance kind = Disturbance::kGroundShift;
   int plane = 0;
-  int person = 0;              // who is pushed
-  double lever = 0.0;          // m, of a force
   std::vector<double> series;  // one per frame
+  Segmenting segments = {};
 };
-
-// Whether it has a tenth of its spread in four fifths of the recording, not in one as a step does.
-bool GoesOn(const std::vector<double>& series) {
-  const int part = static_cast<int>(series.size()) / 5;
-  int moving = 0;
-  for (int i = 0; i < 5; ++i) {
-    moving += std::sqrt(Variance(series, i * part, part)) > 0.1 * Spread(series);
-  }
-  return moving >= 4;
-}
 
 std::optional<ContinuousInput> ContinuousInputOf(const PendulumRecording& recording) {
   const GroundMotion& ground = recording.scene.ground;
+  if (!ground.moves()) return std::nullopt;
   const int frames = recording.num_frames();
   std::optional<ContinuousInput> best;
   double most = 1e-3;  // m/s^2
   const auto offer = [&](double acceleration, ContinuousInput input) {
-    if (acceleration <= most || !GoesOn(input.series)) return;
+    input.segments = SegmentsOf(input.series);
+    if (acceleration <= most || input.segments.frames == 0) return;
     most = acceleration;
     best = std::move(input);
   };
   for (int plane = 0; plane < 2; ++plane) {
-    if (ground.moves()) {
-      std::vector<double> shift, tilt;
-      for (int t = 0; t < frames; ++t) {
-        shift.push_back(ground.PoseAt(t)[plane]), tilt.push_back(ground.PoseAt(t)[2 + plane]);
-      }
-      double squares = 0.0;
-      for (int t = 1; t + 1 < frames; ++t) {
-        const double second = (shift[t + 1] - 2.0 * shift[t] + shift[t - 1]) /
-                              (recording.scene.dt * recording.scene.dt);
-        squares += second * second;
-      }
-      offer(std::sqrt(squares / (frames - 2)), {Disturbance::kGroundShift, plane, 0, 0.0, shift});
-      offer(kGravity * Spread(tilt), {Disturbance::kGroundTilt, plane, 0, 0.0, tilt});
+    std::vector<double> shift, tilt;
+    for (int t = 0; t < frames; ++t) {
+      shift.push_back(ground.PoseAt(t)[plane]), tilt.push_back(ground.PoseAt(t)[2 + plane]);
     }
-    for (int n = 0; n < recording.num_people(); ++n) {
-      std::vector<double> force;
-      double both = 0.0, square = 0.0;
-      int active = 0;
-      for (int t = 0; t < frames; ++t) {
-        // By external pushes: those of other kinds stand for what the ground does as well.
-        Vector4<double> sum = Vector4<double>::Zero();
-        for (const ScenePush& push : recording.scene.pushes) {
-          if (push.person != n || !push.Active(t) || push.kind != PushKind::kExternal) continue;
-          sum += push.force[t - push.start_frame];
-        }
-        force.push_back(sum[plane]);
-        active += !sum.isZero(0.0);
-        both += sum[plane] * sum[2 + plane];
-        square += sum[plane] * sum[plane];
-      }
-      if (2 * active < frames) continue;
-      offer(Spread(force) / recording.scene.people[n].body.mass,
-            {Disturbance::kForce, plane, n, square > 0.0 ? both / square : 0.0, force});
+    double squares = 0.0;
+    for (int t = 1; t + 1 < frames; ++t) {
+      const double second = (shift[t + 1] - 2.0 * shift[t] + shift[t - 1]) /
+                            (recording.scene.dt * recording.scene.dt);
+      squares += second * second;
     }
+    offer(std::sqrt(squares / (frames - 2)), {Disturbance::kGroundShift, plane, shift});
+    offer(kGravity * Spread(tilt), {Disturbance::kGroundTilt, plane, tilt});
   }
   return best;
 }
@@ -243,7 +201,6 @@ FrequencyBin MeanOver(const ArrayXcd& responses) {
 struct PersonSpectra {
   CrossSpectra spectra;
   std::optional<LinearLoop> loop;
-  double lever = 0.0;
 };
 
 // Segments that last equally long.
@@ -262,14 +219,14 @@ FrequencyResponse ResponseOf(const SegmentGroup& group) {
     all.Add(person.spectra);
   }
   const Eigen::Index people = static_cast<Eigen::Index>(group.people.size());
-  for (int i : all.CoherentBins(response.periodic)) {
+  for (int i : all.CoherentBins()) {
     const double hz = i * all.step_hz, c = all.Coherence(i);
     ArrayXcd measured(people), models(people);
     Eigen::Index n = 0;
     for (const auto& [name, person] : group.people) {
       measured[n] = person.spectra.Response(i);
       if (person.loop) {
-        const LoopAnswer answer = person.loop->Answer(response.input, hz, person.lever);
+        const LoopAnswer answer = person.loop->Answer(response.input, hz);
         models[n] = response.output == LoopOutput::kAngle ? answer.angle : answer.torque;
       }
       ++n;
@@ -297,30 +254,27 @@ void Gather(const PendulumRecording& recording, const ModelOptions& options,
   if ((recording.num_frames() - 1) * dt < 10.0) return;
   const std::optional<ContinuousInput> input = ContinuousInputOf(recording);
   if (!input) return;
-  const Segmenting segments = SegmentsOf(input->series, dt);
-  if (segments.frames == 0) return;
+  const Segmenting& segments = input->segments;
   const double seconds = segments.frames * dt;
   for (LoopOutput output : {LoopOutput::kAngle, LoopOutput::kTorque}) {
     auto group = std::find_if(groups->begin(), groups->end(), [&](const SegmentGroup& g) {
       const FrequencyResponse& r = g.response;
       return r.input == input->kind && r.plane == input->plane && r.output == output &&
-             r.periodic == segments.periodic && std::abs(r.segment_s - seconds) < 0.005 * seconds;
+             std::abs(r.segment_s - seconds) < 0.005 * seconds;
     });
     if (group == groups->end()) group = groups->insert(group, SegmentGroup{});
     FrequencyResponse& response = group->response;
     if (group->people.empty()) {
       response.input = input->kind, response.plane = input->plane, response.output = output;
-      response.periodic = segments.periodic, response.segment_s = seconds;
+      response.segment_s = seconds;
       response.has_model = WithoutLinearLoop(options).empty();
     }
     ++response.recordings;
     for (int n = 0; n < recording.num_people(); ++n) {
-      if (input->kind == Disturbance::kForce && n != input->person) continue;
       if (output == LoopOutput::kTorque && !recording.HasPlates(n)) continue;
       PersonSpectra& person = group->people[recording.subject_ids[n]];
       const auto series = OutputSeries(recording, n, input->plane, output);
       person.spectra.Add(CrossSpectraOf(input->series, series, segments, dt));
-      person.lever = input->lever;
       if (response.has_model) {
         person.loop.emplace(options, recording.scene.people[n].body, parameters[n], input->plane);
       }
@@ -333,7 +287,7 @@ constexpr const char* kAngles[] = {"theta", "phi"};
 }  // namespace
 
 std::string FrequencyResponse::InputUnit() const {
-  return input == Disturbance::kGroundShift ? "m" : input == Disturbance::kGroundTilt ? "rad" : "N";
+  return input == Disturbance::kGroundShift ? "m" : "rad";
 }
 
 std::string FrequencyResponse::OutputUnit() const {
@@ -343,9 +297,8 @@ std::string FrequencyResponse::OutputUnit() const {
 std::string FrequencyResponse::Name() const {
   const std::string angle = kAngles[plane], axis = plane == 0 ? "x" : "y";
   return (output == LoopOutput::kAngle ? "" : "torque about ") + angle +
-         (input == Disturbance::kGroundTilt    ? " by the ground's tilt " + angle
-          : input == Disturbance::kGroundShift ? " by the ground's shift along " + axis
-                                               : " by the push along " + axis);
+         (input == Disturbance::kGroundTilt ? " by the ground's tilt " + angle
+                                            : " by the ground's shift along " + axis);
 }
 
 std::string FrequencyResponse::Key() const {

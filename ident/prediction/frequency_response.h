@@ -1,5 +1,5 @@
-// ident: how people answer oscillations of the ground or of a push, frequency by frequency,
-// measured and by the model.
+// ident: how people answer ground that oscillates, frequency by frequency, measured and by the
+// model.
 //
 // With U_k, Y_k the Fourier transforms of the segments k = 1 .. K,
 //   S_uu = sum |U_k|^2,   S_yy = sum |Y_k|^2,   S_yu = sum Y_k conj(U_k),
@@ -7,12 +7,12 @@
 // of each person, over all recordings of that person; then the mean of log |H| and of the phase
 // over people, with its standard error: from people to people, or of one person by the coherence.
 // The model's is in closed form (problem/linear_loop.h), averaged over the same people.
-// Input: of the ground's shift (m) or tilt (rad) and of external pushes (N), in both planes, what
-// accelerates a person most. Output: the angle of the body in the laboratory (rad), and where there
-// are force platforms the ankles' torque (N m; ground.h; less that at rest):
+// Input: of the ground's shift (m) and tilt (rad), in both planes, what accelerates a person most;
+// it repeats itself, and segments are its periods. Output: the angle of the body in the laboratory
+// (rad), and where there are force platforms the ankles' torque (N m; ground.h; less that at rest):
 //   about theta  tau = -F_z (p_x - x) - h F_x,   about phi  tau = F_z (p_y - y) + h F_y
-// Sources: Welch, IEEE Trans. Audio Electroacoust. 1967; Bendat and Piersol, Random Data, 2010,
-// section 9.2.4: the random error of log |H| and of the phase is sqrt((1 - c) / (2 c K)).
+// Source: Bendat and Piersol, Random Data, 2010, section 9.2.4: the random error of log |H| and of
+// the phase is sqrt((1 - c) / (2 c K)).
 #pragma once
 
 #include <Eigen/Core>
@@ -29,19 +29,18 @@ namespace pushid {
 
 struct Segmenting {
   int frames = 0, first = 0, step = 0;  // of a segment, where the first begins, to the next
-  bool periodic = false;                // no window; else Hann's
 };
 
 // The shortest period, at most half of the series, after which it repeats itself to 2 % of its
 // standard deviation (its first tenth is left out), in frames; 0: none.
 int PeriodOf(const std::vector<double>& series);
-// By the input: its periods, the first of them left out (the answer to it is not yet periodic), of
-// two half of it; else nine segments that overlap by half, of 4 to 30 s. frames 0: too short.
-Segmenting SegmentsOf(const std::vector<double>& input, double dt);
+// The input's periods, the first of them left out (the answer to it is not yet periodic), of two
+// half of it. frames 0: it does not repeat itself.
+Segmenting SegmentsOf(const std::vector<double>& input);
 
 struct CrossSpectra {
   double step_hz = 0.0;   // between bins
-  double averages = 0.0;  // K; where segments overlap, of those as good as independent
+  double averages = 0.0;  // K; where segments overlap, of those that do not
   Eigen::ArrayXd uu, yy;  // by bin, from 0 Hz on
   Eigen::ArrayXcd yu;
 
@@ -49,10 +48,9 @@ struct CrossSpectra {
   void Add(const CrossSpectra& other);
   std::complex<double> Response(int bin) const { return yu[bin] / uu[bin]; }
   double Coherence(int bin) const;
-  // Bins where the input has at least 1e-6 of its largest power (periodic: 1e-4, which only lines
-  // have), and whose coherence is at least 0.3 and beyond what two independent series have in one
-  // of 20 cases.
-  std::vector<int> CoherentBins(bool periodic) const;
+  // Bins where the input has at least 1e-4 of its largest power, which only lines have, and whose
+  // coherence is at least 0.3 and beyond what two independent series have in one of 20 cases.
+  std::vector<int> CoherentBins() const;
 };
 
 CrossSpectra CrossSpectraOf(const std::vector<double>& input, const std::vector<double>& output,
@@ -75,21 +73,20 @@ struct FrequencyResponse {
   Disturbance input = Disturbance::kGroundShift;
   int plane = 0;  // 0: x and theta, 1: y and phi
   LoopOutput output = LoopOutput::kAngle;
-  bool periodic = false;  // at the frequencies of sums of sines; else by Welch
   int recordings = 0;
   double segment_s = 0.0;
   std::vector<std::string> people;
   std::vector<FrequencyBin> bins;
   bool has_model = false;  // it has a closed form
 
-  std::string InputUnit() const;   // "m", "rad", "N"
+  std::string InputUnit() const;   // "m", "rad"
   std::string OutputUnit() const;  // "rad", "N m"
   std::string Name() const;        // "theta by the ground's shift along x"
   std::string Key() const;         // "angle_theta_by_ground_shift"
 };
 
-// recordings: as the files have them; those of less than 10 s, or without a continuous input, have
-// none. parameters: [recording][person]; else each person's own.
+// recordings: as the files have them; those of less than 10 s, or without an input that goes on
+// and repeats itself, have none. parameters: [recording][person]; else each person's own.
 std::vector<FrequencyResponse> FrequencyResponses(const IdentifiedModel& model,
                                                   const std::vector<PendulumRecording>& recordings);
 std::vector<FrequencyResponse> FrequencyResponses(

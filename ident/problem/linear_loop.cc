@@ -102,7 +102,6 @@ LinearLoop::LinearLoop(const ModelOptions& options, const Body& person,
   ankle_ = ankle * (1.0 - at_once).matrix().asDiagonal();
 
   const Body body = BodyAtRest(upright, person, p);
-  if (options.body == BodyModel::kTable) push_gain_ = p[kPushGain];
   const Matrix4<double> mass = MassMatrix(body, Angles<double>());
   mass_ << mass(plane, plane), mass(plane, 2 + plane), mass(2 + plane, plane),
       mass(2 + plane, 2 + plane);
@@ -123,28 +122,16 @@ Eigen::Matrix2cd LinearLoop::Impedance(const Complex& s, bool with_ankle) const 
   return z;
 }
 
-LoopAnswer LinearLoop::Answer(Disturbance disturbance, double hz, double lever) const {
+LoopAnswer LinearLoop::Answer(Disturbance disturbance, double hz) const {
   const Complex s(0.0, 2.0 * M_PI * hz), s2 = s * s;
-  Eigen::Vector2cd felt = Eigen::Vector2cd::Zero(), force = Eigen::Vector2cd::Zero();
-  Complex of_ground = 0.0;
-  switch (disturbance) {
-    case Disturbance::kGroundShift:
-      felt[0] = s2;
-      break;
-    case Disturbance::kGroundTilt:
-      felt = {plane_ == 0 ? -kGravity : kGravity, s2};
-      of_ground = 1.0;
-      break;
-    case Disturbance::kForce:
-      force = push_gain_ * Eigen::Vector2cd{1.0, lever};
-      break;
-  }
-  const Eigen::Vector2cd of_ground_motion = -mass_.cast<Complex>() * felt;
-  const Eigen::Vector2cd at =
-      Impedance(s, true).inverse() * Eigen::Vector2cd(of_ground_motion + force);
-  const Complex torque = s2 * (mass_(1, 0) * at[0] + mass_(1, 1) * at[1]) - of_ground_motion[1] -
-                         mgl_ * at[1] - force[1];
-  return {at[1] + of_ground, torque};
+  const bool tilts = disturbance == Disturbance::kGroundTilt;
+  Eigen::Vector2cd felt{s2, 0.0};
+  if (tilts) felt = {plane_ == 0 ? -kGravity : kGravity, s2};
+  const Eigen::Vector2cd of_ground = -mass_.cast<Complex>() * felt;
+  const Eigen::Vector2cd at = Impedance(s, true).inverse() * of_ground;
+  const Complex torque =
+      s2 * (mass_(1, 0) * at[0] + mass_(1, 1) * at[1]) - of_ground[1] - mgl_ * at[1];
+  return {at[1] + (tilts ? 1.0 : 0.0), torque};
 }
 
 // The ankles' late torque at a place that oscillates.

@@ -8,7 +8,6 @@
 // and damping, gravity, the ground) and late (reaction_delay.h). Disturbances are
 //   ground shift u, m     U = -M [s^2; 0] u
 //   ground tilt u, rad    U = -M [-+ g; s^2] u      (- for theta, + for phi; ground.h)
-//   force u, N, at the lever r, m: U = [1; r] u     (r: negative about phi at a positive height)
 // The loop is that of the late part of the ankles' torque, which is cut for it:
 //   L = -C P,   C = J_ankle's row of the torque times exp(-s d), P = [X; E] by a torque there.
 // It is stable as long as L goes around -1 as the body and its passive part need; margins are how
@@ -34,11 +33,9 @@
 namespace pushid {
 
 // What moves a person.
-enum class Disturbance { kGroundShift, kGroundTilt, kForce };
-constexpr EnumNames<Disturbance, 3> Names(Disturbance) {
-  return {{{"ground_shift", Disturbance::kGroundShift},
-           {"ground_tilt", Disturbance::kGroundTilt},
-           {"force", Disturbance::kForce}}};
+enum class Disturbance { kGroundShift, kGroundTilt };
+constexpr EnumNames<Disturbance, 2> Names(Disturbance) {
+  return {{{"ground_shift", Disturbance::kGroundShift}, {"ground_tilt", Disturbance::kGroundTilt}}};
 }
 
 // Amplitudes of one oscillation, per unit of the disturbance.
@@ -71,8 +68,7 @@ class LinearLoop {
   LinearLoop(const ModelOptions& options, const Body& person, const ParameterSet<double>& p,
              int plane);
 
-  // lever: m, of a force (see above).
-  LoopAnswer Answer(Disturbance disturbance, double hz, double lever = 0.0) const;
+  LoopAnswer Answer(Disturbance disturbance, double hz) const;
   // L at s = 2 pi j hz.
   std::complex<double> LoopGain(double hz) const;
   LoopNumbers Numbers() const;
@@ -90,7 +86,6 @@ class LinearLoop {
   void FindMargins(LoopNumbers* numbers) const;
 
   int plane_;
-  double push_gain_ = 1.0;
   Eigen::Matrix2d mass_, inertia_;  // of the body; and with what acts as mass
   double mgl_ = 0.0;                // N m/rad, of the body that turns
   Row now_ = Row::Zero(), ankle_ = Row::Zero(), step_ = Row::Zero();

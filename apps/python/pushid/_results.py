@@ -226,9 +226,9 @@ class Result:
         return _pushid.loop(self._model, mass, rod)
 
     def frequency_response(self, recordings):
-        """How people answer ground that oscillates, or pushes that go on, frequency by frequency, beside the model.
+        """How people answer ground that oscillates, frequency by frequency, beside the model.
 
-        {"angle_theta_by_ground_shift": {...}, ...}, empty if nothing in the recordings is continuous for 10 s. Each has
+        {"angle_theta_by_ground_shift": {...}, ...}, empty if nothing in the recordings repeats itself for 10 s. Each has
         arrays with one value per frequency: "frequency" (Hz), "gain" ("output_unit" over "input_unit"),
         "log_gain_error" (standard error of the gain's natural logarithm), "phase" and "phase_error" (rad),
         "coherence", "people" (how many), and, where the model has a closed form, "model_gain" and "model_phase";

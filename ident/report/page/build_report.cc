@@ -276,10 +276,8 @@ std::string CaptionOf(const FrequencyResponse& response) {
   const size_t people = response.people.size();
   const std::string seconds = Rounded(response.segment_s, 3) + " s";
   return response.Name() + ": " + CountText(response.recordings, "recording") + " of " +
-         CountText(people, "person", "people") +
-         (response.periodic ? "; the excited frequencies, in periods of " + seconds
-                            : "; Welch's method, segments of " + seconds) +
-         (response.output == LoopOutput::kAngle ? "" : "; torque by force platforms") +
+         CountText(people, "person", "people") + "; the excited frequencies, in periods of " +
+         seconds + (response.output == LoopOutput::kAngle ? "" : "; torque by force platforms") +
          (people == 1 ? "; errors by the coherence." : "; errors from person to person.");
 }
 
