@@ -70,7 +70,7 @@ namespace {
 
 using namespace pushid;
 
-// The library checks the same ranges, but does not know the flags' names.
+// The library trusts its caller.
 void CheckRecordingNumbers() {
   CheckRange("people", FLAGS_people, 1, 10000);
   CheckRange("recordings_per_person", FLAGS_recordings_per_person, 1, 10000);

@@ -158,9 +158,6 @@ struct SyntheticOptions {
   uint64_t noise_seed = 0;
 };
 
-// Error: an option, its value and the constraint that it breaks.
-MaybeError CheckSyntheticOptions(const SyntheticOptions& options);
-
 struct SyntheticRecording {
   Recording recording;                           // with noise
   std::vector<ParameterSet<double>> parameters;  // the truth of each person in this very recording
@@ -169,7 +166,7 @@ struct SyntheticRecording {
   std::vector<SyntheticSkeleton> skeletons;      // one per person
 };
 
-// Fails on unsound options, and when a person falls (names recording, frame and quantity).
+// Fails when a person falls (names recording, frame and quantity).
 Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticOptions& options);
 
 // The recordings alone.

@@ -48,8 +48,6 @@ WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progres
 // problem's options say.
 WeightedSolution SolveFit(FitProblem* problem, const SolveProgress& progress = nullptr);
 
-class FitProblem;
-
 // Fits and judges prepared options. A fit without a usable optimum is not ok(), and its message
 // says why.
 FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,

@@ -210,9 +210,6 @@ class FitProblem {
 // The posterior is taken as normal: cost and J'J at the point (Laplace). With two units, s is known
 // to a factor of about two either way; it says how much a unit may differ, no more.
 
-class FitProblem;
-struct CostWeights;
-
 // Bounds of s, in ParameterSpec::pooling_sigma's units: 1 % and a factor of twenty.
 inline constexpr double kLeastPoolingSigma = 0.01, kLargestPoolingSigma = 3.0;
 

@@ -69,8 +69,6 @@ Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recor
 // the problem built anew after every third, come near the optimum; BFGS finds it, in turns with the
 // spread of pooled units.
 
-class FitProblem;
-
 struct LikelihoodSolution {
   Solution solution;
   bool stays = false;  // the likelihood, from round to round
