@@ -4,13 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/fit/fit.h"
-#include "ident/problem/fit_problem.h"
-#include "ident/uncertainty/covariance.h"
+#include "ident/problem/parallel.h"
+#include "ident/uncertainty/contrast.h"
 #include "residuals/rollout_residual.h"
 
 namespace pushid {
@@ -215,33 +217,25 @@ void UnpoolLabel(FitOptions* options, Warnings* told) {
                   ", which would be pooled by the same label: not pooled");
 }
 
-// Whether people can be told from their recordings.
-bool PeopleCanBeTold(const std::vector<PendulumRecording>& recordings) {
-  std::map<std::string, int> times;
+// The recordings of everybody with each value of the label; empty where people share recordings.
+using ByPersonAndValue = std::map<std::pair<std::string, std::string>, Recordings>;
+ByPersonAndValue Apart(const Recordings& recordings, const std::string& label) {
+  ByPersonAndValue apart;
   for (const PendulumRecording& recording : recordings) {
-    for (const std::string& id : recording.subject_ids) ++times[id];
+    if (recording.num_people() != 1) return {};
+    apart[{recording.subject_ids[0], LabelOf(recording, 0, label)}].push_back(recording);
   }
-  bool repeated = false;
-  for (const auto& [id, number] : times) repeated = repeated || number > 1;
-  return repeated && static_cast<int>(times.size()) >= kFewestPeople;
+  return apart;
 }
 
-// Options to repeat the fit from its optimum, with people who differ in what is compared.
-FitOptions WithPeopleApart(const FitResult& result) {
-  FitOptions options = result.options;
-  options.pool_by = kSubjectUnit;
-  options.pooling_sigma.reset();
+// Options for people one by one: as of the joint fit, without slopes, pools and settled weights.
+FitOptions OfOnePerson(FitOptions options) {
+  options.contrast.clear();
+  options.num_threads = 1;
   options.start_deviations.clear();
-  options.hold_network = true;
-  options.horizons = {0};
   for (ParameterSpec& spec : options.table.specs) {
-    if (spec.free) spec.nominal = result.parameters[spec.id];
     spec.pooled = false;
-    spec.pooling_sigma = kFirstPoolingSigma;
-  }
-  for (const ContrastRow& row : result.contrast->rows) {
-    ParameterSpec* spec = options.table.Find(row.name);
-    spec->pooled = spec->free && !IsPairParameter(spec->id);
+    if (spec.slope_of) spec.free = false;
   }
   return options;
 }
@@ -274,20 +268,34 @@ MaybeError AddCovariates(const std::vector<PendulumRecording>& recordings, FitOp
   return std::nullopt;
 }
 
-void AddContrastEffects(const std::vector<PendulumRecording>& recordings, FitResult* result) {
+void JudgeContrastByPeople(const std::vector<PendulumRecording>& recordings, FitResult* result) {
   if (!result->contrast) return;
   const FitOptions& fitted = result->options;
-  const bool by_person = AnyPooled(fitted.table) && fitted.pool_by == kSubjectUnit;
-  if (by_person || !PeopleCanBeTold(recordings)) return;
-  FitProblem problem(recordings, WithPeopleApart(*result));
-  const WeightedSolution solved = SolveFit(&problem);
-  if (!solved.solution.ok()) return;
-  for (ContrastRow& row : result->contrast->rows) {
-    const ParameterSpec* spec = problem.options().table.Find(row.name);
-    if (!spec->pooled || spec->pooling_sigma <= kLeastPoolingSigma) continue;
-    const ParameterSpec* slope = fitted.table.Find(row.name + "~" + result->contrast->label);
-    row.effect = result->parameters[slope->id] / PoolingSigma(*spec);
+  if (!fitted.covariates.empty() || fitted.likelihood != Likelihood::kTrajectory) return;
+  Contrast& contrast = *result->contrast;
+  const ByPersonAndValue apart = Apart(recordings, contrast.label);
+  if (apart.empty()) return;
+  const FitOptions options = OfOnePerson(fitted);
+  const std::vector<ByPersonAndValue::value_type> people(apart.begin(), apart.end());
+  std::vector<std::optional<ParameterSet<double>>> own(people.size());
+  ParallelFor(static_cast<int>(people.size()), fitted.num_threads, [&](int i) {
+    const Result<IdentifiedModel> model = SolveModel(people[i].second, options);
+    if (model.ok()) own[i] = model.value().parameters;
+  });
+  if (!std::all_of(own.begin(), own.end(), [](const auto& one) { return one.has_value(); })) return;
+  for (ContrastRow& row : contrast.rows) {
+    const ParameterSpec* spec = fitted.table.Find(row.name);
+    std::vector<OwnEstimate> estimates;
+    for (size_t i = 0; i < people.size(); ++i) {
+      const auto& [person, value] = people[i].first;
+      estimates.push_back(
+          {person, value == contrast.second, ToFitted(spec->transform, (*own[i])[spec->id])});
+    }
+    if (row.status != EstimateStatus::kUnidentifiable) {
+      JudgeByPeople(spec->transform, estimates, &row);
+    }
   }
+  CorrectForRows(&contrast);
 }
 
 }  // namespace pushid

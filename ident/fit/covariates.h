@@ -30,13 +30,11 @@ inline constexpr int kLeastDistinctValues = 3;
 MaybeError AddCovariates(const std::vector<PendulumRecording>& recordings, FitOptions* options,
                          Warnings* told);
 
-// Differences in standard deviations between people.
-
-// Where the fit does not let people differ, a second one does: each parameter that is compared
-// deviates by person, and its spread is estimated (problem/fit_problem.cc), while the contrast
-// takes away what the label explains. Differences, intervals and p values remain those of the fit
-// itself. An effect stays untold where no spread is found, of what two people share, where fewer
-// than kFewestPeople people were recorded or nobody more than once, and where that fit fails.
-void AddContrastEffects(const std::vector<PendulumRecording>& recordings, FitResult* result);
+// Differences judged by people's own fits (uncertainty/contrast.h): everybody who was recorded
+// alone is fitted alone where each value holds, which costs about as much as the joint fit. Where
+// people share recordings, numbers are covariates too, a likelihood of single steps is fitted, or
+// somebody alone has no usable optimum, differences stay as the joint fit has them, without
+// effects.
+void JudgeContrastByPeople(const std::vector<PendulumRecording>& recordings, FitResult* result);
 
 }  // namespace pushid

@@ -408,7 +408,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   const Result<SolvedFit> fit = SetUpAndSolve(recordings, options, progress);
   if (fit.ok()) {
     FitResult result = Judge(fit.value());
-    AddContrastEffects(recordings, &result);
+    JudgeContrastByPeople(recordings, &result);
     return result;
   }
   FitResult none;

@@ -521,25 +521,13 @@ std::string DifferText(const Contrast& c) {
              : "after Holm's correction for " + of + " these differ: " + found;
 }
 
-std::string EffectNote(const FitResult& result) {
-  const Contrast& c = *result.contrast;
-  std::string untold;
-  for (const ContrastRow& row : c.rows) {
-    if (!row.effect) untold += (untold.empty() ? "" : ", ") + row.name;
-  }
-  const FitOptions& o = result.options;
-  const bool by_person = AnyPooled(o.table) && o.pool_by == kSubjectUnit;
-  std::string text = "effects are in standard deviations between people";
-  if (!by_person) text += ", by a second fit that lets them differ";
-  if (!untold.empty()) {
-    text += "; left out, for want of people, of repeated recordings or of a spread: " + untold;
-  }
-  return text + "\n";
+std::string JudgedText(const Contrast& c) {
+  const bool apart = std::any_of(c.rows.begin(), c.rows.end(),
+                                 [](const ContrastRow& row) { return row.effect.has_value(); });
+  return apart
+             ? "judged by everybody's own fit; effects are in standard deviations between people\n"
+             : "judged by the joint fit, by people as clusters\n";
 }
-
-}  // namespace
-
-namespace {
 
 // The spread between few people may come out near nothing, and an effect over it as anything.
 constexpr double kLargestEffect = 5.0;
@@ -566,7 +554,7 @@ TextTable ContrastTable(const Contrast& c) {
 std::string ContrastText(const FitResult& result) {
   if (!result.contrast) return "";
   return ComparedText(*result.contrast) + "\n" + DifferText(*result.contrast) + "\n" +
-         EffectNote(result);
+         JudgedText(*result.contrast);
 }
 
 namespace {

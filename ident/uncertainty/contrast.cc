@@ -2,6 +2,7 @@
 #include "ident/uncertainty/contrast.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -28,13 +29,6 @@ double QuantileAt(double level, double freedom) {
     (TailOf(t, freedom) > level ? low : high) = t;
   }
   return 0.5 * (low + high);
-}
-
-// The spread of the units that a fit lets differ, on the fitted scale.
-std::optional<double> SpreadBetweenPeople(const FitOptions& options, const ParameterSpec& spec) {
-  if (!spec.pooled || options.pool_by != kSubjectUnit) return std::nullopt;
-  if (!options.pooling_sigma && spec.pooling_sigma <= kLeastPoolingSigma) return std::nullopt;
-  return PoolingSigma(spec);
 }
 
 void AddPeople(const std::vector<PendulumRecording>& recordings, Contrast* contrast) {
@@ -65,12 +59,14 @@ std::vector<double> HolmCorrected(const std::vector<double>& p) {
   std::vector<size_t> order(p.size());
   std::iota(order.begin(), order.end(), 0);
   const auto known = [&p](size_t i) { return std::isnan(p[i]) ? 1.0 : p[i]; };
+  const size_t counted = static_cast<size_t>(
+      std::count_if(p.begin(), p.end(), [](double one) { return !std::isnan(one); }));
   std::stable_sort(order.begin(), order.end(),
                    [&known](size_t i, size_t j) { return known(i) < known(j); });
   std::vector<double> corrected(p.size());
   double largest = 0.0;
   for (size_t k = 0; k < order.size(); ++k) {
-    const double times = static_cast<double>(order.size() - k);
+    const double times = k < counted ? static_cast<double>(counted - k) : 1.0;
     largest = std::max(largest, std::min(1.0, times * known(order[k])));
     corrected[order[k]] = largest;
   }
@@ -106,6 +102,60 @@ double ProbabilityOfZero(const Scatter& scatter, const Eigen::VectorXd& coeffici
   return std::exp(0.5 * (low + high));
 }
 
+bool JudgeByPeople(Transform transform, const std::vector<OwnEstimate>& people, ContrastRow* row) {
+  std::array<double, 2> count{}, mean{};
+  for (const OwnEstimate& one : people) ++count[one.second];
+  if (std::min(count[0], count[1]) < 2.0) return false;
+  for (const OwnEstimate& one : people) mean[one.second] += one.fitted / count[one.second];
+
+  // What each person moves the two means by, with Bessel's correction.
+  std::map<std::string, std::array<double, 2>> moves;
+  double within = 0.0;
+  for (const OwnEstimate& one : people) {
+    const double n = count[one.second], off = one.fitted - mean[one.second];
+    moves[one.person][one.second] += off / std::sqrt(n * (n - 1.0));
+    within += off * off / (count[0] + count[1] - 2.0);
+  }
+  if (!(within > 0.0)) return false;
+  const auto variance = [&moves](double by_first, double by_second) {
+    double sum = 0.0;
+    for (const auto& [person, move] : moves) {
+      const double own = by_second * move[1] - by_first * move[0];
+      sum += own * own;
+    }
+    return sum;
+  };
+  const double of_people = static_cast<double>(moves.size());
+  const double v = variance(1.0, 1.0), first = variance(1.0, 0.0), second = variance(0.0, 1.0);
+  const bool apart = of_people == count[0] + count[1];
+  const double freedom =
+      apart ? v * v / (first * first / (count[0] - 1.0) + second * second / (count[1] - 1.0))
+            : std::min(count[0], count[1]) - 1.0;
+  const double b = mean[1] - mean[0];
+  row->first = ToNatural(transform, mean[0]);
+  row->second = ToNatural(transform, mean[1]);
+  row->difference = row->second - row->first;
+  const double width =
+      StudentQuantile95(freedom) * std::sqrt(variance(TransformSlope(transform, row->first),
+                                                      TransformSlope(transform, row->second)));
+  row->lower95 = row->difference - width;
+  row->upper95 = row->difference + width;
+  row->p = StudentTail(std::abs(b) / std::sqrt(v), freedom);
+  row->effect = b / std::sqrt(within);
+  return true;
+}
+
+void CorrectForRows(Contrast* contrast) {
+  std::vector<double> p;
+  for (const ContrastRow& row : contrast->rows) {
+    p.push_back(row.status == EstimateStatus::kUnidentifiable
+                    ? std::numeric_limits<double>::quiet_NaN()
+                    : row.p);
+  }
+  const std::vector<double> corrected = HolmCorrected(p);
+  for (size_t i = 0; i < p.size(); ++i) contrast->rows[i].p_holm = corrected[i];
+}
+
 std::optional<Contrast> ContrastAt(const FitProblem& problem, const FitPoint& point,
                                    const Uncertainty& u) {
   const FitOptions& options = problem.options();
@@ -116,7 +166,6 @@ std::optional<Contrast> ContrastAt(const FitProblem& problem, const FitPoint& po
   const Eigen::Index size = u.covariance.rows();
   const ParameterSet<double> values = problem.Parameters(point, "");
   Contrast contrast;
-  std::vector<double> p;
   for (const ParameterSpec& slope : options.table.specs) {
     if (!slope.free || !slope.slope_of || !slope.slope_of->covariate.is_contrast()) continue;
     const Covariate& between = slope.slope_of->covariate;
@@ -148,13 +197,10 @@ std::optional<Contrast> ContrastAt(const FitProblem& problem, const FitPoint& po
       row.upper95 = row.difference + width;
       row.p = ProbabilityOfZero(u.scatter, Eigen::VectorXd::Unit(size, own), b);
     }
-    if (const auto spread = SpreadBetweenPeople(options, of)) row.effect = b / *spread;
-    p.push_back(row.p);
     contrast.rows.push_back(std::move(row));
   }
   if (contrast.rows.empty()) return std::nullopt;
-  const std::vector<double> corrected = HolmCorrected(p);
-  for (size_t i = 0; i < p.size(); ++i) contrast.rows[i].p_holm = corrected[i];
+  CorrectForRows(&contrast);
   AddPeople(problem.recordings(), &contrast);
   return contrast;
 }

@@ -16,6 +16,7 @@
 #include <cstdio>
 #include <map>
 #include <mutex>
+#include <numeric>
 
 #include "datasets/files/random.h"
 #include "datasets/synthetic/synthetic_recordings.h"
@@ -23,6 +24,7 @@
 #include "ident/fit/fit.h"
 #include "ident/fit/fit_setup.h"
 #include "ident/problem/parallel.h"
+#include "ident/problem/statistics.h"
 #include "tests/studies/study.h"
 
 DEFINE_int32(studies, 200, "synthetic studies of each kind");
@@ -116,7 +118,61 @@ Result<std::vector<PendulumRecording>> Draw(const Kind& kind, uint64_t seed) {
 
 struct Tally {
   int studies = 0, held = 0, below = 0;  // p < 0.05
+  int two_stage = 0;                     // p < 0.05 by a t-test on people's own fits
 };
+
+// Everybody's own estimates by person and value: the first stage of a test in two stages.
+using OwnFits = std::map<std::string, std::map<std::string, ParameterSet<double>>>;
+
+Result<OwnFits> FitEverybody(const std::vector<PendulumRecording>& recordings) {
+  std::map<std::pair<std::string, std::string>, std::vector<PendulumRecording>> apart;
+  for (const PendulumRecording& r : recordings) {
+    apart[{r.subject_ids[0], LabelOf(r, 0, "group")}].push_back(r);
+  }
+  OwnFits fits;
+  for (const auto& [of, own] : apart) {
+    FitOptions options = OrExit(MakeFitOptions(OrExit(ParseOptionWords("")), &own));
+    if (MaybeError error = PrepareFit(own, &options)) return *error;
+    const FitResult result = Fit(own, options);
+    if (!result.ok()) return Error{"not fitted"};
+    fits[of.first][of.second] = result.parameters;
+  }
+  return fits;
+}
+
+double VarianceOf(const std::vector<double>& values, double mean) {
+  double sum = 0.0;
+  for (double v : values) sum += (v - mean) * (v - mean);
+  return sum / (static_cast<double>(values.size()) - 1.0);
+}
+
+double MeanOf(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+// The second stage: Student's t-test, paired where people have both values.
+double TwoStageProbability(const OwnFits& fits, const ParameterSpec& spec, bool paired) {
+  std::vector<double> a, b;
+  for (const auto& [person, by_value] : fits) {
+    const auto value = [&](const char* name) {
+      return ToFitted(spec.transform, by_value.at(name)[spec.id]);
+    };
+    if (paired) {
+      a.push_back(value("b") - value("a"));
+    } else if (by_value.count("a") > 0) {
+      a.push_back(value("a"));
+    } else {
+      b.push_back(value("b"));
+    }
+  }
+  const double mean_a = MeanOf(a), n = static_cast<double>(a.size());
+  const double var_a = VarianceOf(a, mean_a);
+  if (paired) return StudentTail(std::abs(mean_a) / std::sqrt(var_a / n), n - 1.0);
+  const double mean_b = MeanOf(b), m = static_cast<double>(b.size());
+  const double pooled = ((n - 1.0) * var_a + (m - 1.0) * VarianceOf(b, mean_b)) / (n + m - 2.0);
+  return StudentTail(std::abs(mean_b - mean_a) / std::sqrt(pooled * (1.0 / n + 1.0 / m)),
+                     n + m - 2.0);
+}
 
 struct Found {
   std::map<std::string, Tally> by_parameter;
@@ -134,8 +190,9 @@ void Judge(const Kind& kind, int index, std::mutex* mutex, Found* found) {
     FitOptions options = OrExit(MakeFitOptions(Given(), &recordings.value()));
     const MaybeError unprepared = PrepareFit(recordings.value(), &options);
     const FitResult result = unprepared ? FitResult() : Fit(recordings.value(), options);
+    const auto everybody = FitEverybody(recordings.value());
     const std::lock_guard<std::mutex> lock(*mutex);
-    if (!result.ok() || !result.contrast) break;
+    if (!result.ok() || !result.contrast || !everybody.ok()) break;
     ++found->studies;
     const ParameterSet<double> a = TruthOf(kind, 0), b = TruthOf(kind, 1);
     bool any_false = false;
@@ -146,6 +203,8 @@ void Judge(const Kind& kind, int index, std::mutex* mutex, Found* found) {
       ++tally.studies;
       tally.held += row.lower95 <= truth && truth <= row.upper95;
       tally.below += row.p < 0.05;
+      tally.two_stage +=
+          TwoStageProbability(everybody.value(), result.options.table[id], kind.paired) < 0.05;
       any_false = any_false || (truth == 0.0 && row.p_holm < 0.05);
       found->differing += truth != 0.0;
       found->detected += truth != 0.0 && row.p_holm < 0.05;
@@ -158,7 +217,8 @@ void Judge(const Kind& kind, int index, std::mutex* mutex, Found* found) {
 }
 
 int Run() {
-  TextTable table({"study", "parameter", ">intervals that hold the truth, %", ">p < 0.05, %"});
+  TextTable table({"study", "parameter", ">intervals that hold the truth, %", ">p < 0.05, %",
+                   ">t-test on single fits: p < 0.05, %"});
   std::string told;
   int failed = 0;
   for (const Kind& kind : kKinds) {
@@ -168,13 +228,15 @@ int Run() {
                 {});
     Tally sum;
     const auto add = [&](const std::string& name, const Tally& t) {
-      table.Add({kind.name, name, Percent(t.held, t.studies), Percent(t.below, t.studies)});
+      table.Add({kind.name, name, Percent(t.held, t.studies), Percent(t.below, t.studies),
+                 Percent(t.two_stage, t.studies)});
     };
     for (const auto& [name, tally] : found.by_parameter) {
       add(name, tally);
       sum.studies += tally.studies;
       sum.held += tally.held;
       sum.below += tally.below;
+      sum.two_stage += tally.two_stage;
     }
     add("all", sum);
     failed += found.failed;

@@ -54,5 +54,34 @@ TEST(ProbabilityOfZero, AgreesWithTheInterval) {
   EXPECT_EQ(ProbabilityOfZero({}, coefficients, 1.0), 1.0);
 }
 
+// Values of scipy.stats.ttest_ind(a, b, equal_var=False) and ttest_rel(a, b).
+TEST(JudgeByPeople, IsWelchsTestOrThePairedOne) {
+  ContrastRow row;
+  ASSERT_TRUE(JudgeByPeople(Transform::kIdentity,
+                            {{"A", false, 1.0},
+                             {"B", false, 2.0},
+                             {"C", false, 3.0},
+                             {"D", true, 4.0},
+                             {"E", true, 5.0},
+                             {"F", true, 9.0}},
+                            &row));
+  EXPECT_DOUBLE_EQ(row.difference, 4.0);
+  EXPECT_NEAR(row.p, 0.1063667160, 1e-6);
+  EXPECT_NEAR(row.lower95, -1.740656, 1e-3);
+  EXPECT_DOUBLE_EQ(*row.effect, 2.0);
+
+  ASSERT_TRUE(JudgeByPeople(Transform::kIdentity,
+                            {{"A", false, 1.0},
+                             {"A", true, 2.0},
+                             {"B", false, 2.0},
+                             {"B", true, 4.0},
+                             {"C", false, 3.0},
+                             {"C", true, 6.0}},
+                            &row));
+  EXPECT_DOUBLE_EQ(row.difference, 2.0);
+  EXPECT_NEAR(row.p, 0.0741799002, 1e-6);
+  EXPECT_FALSE(JudgeByPeople(Transform::kLog, {{"A", false, 1.0}, {"B", true, 2.0}}, &row));
+}
+
 }  // namespace
 }  // namespace pushid
