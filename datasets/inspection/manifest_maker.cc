@@ -351,10 +351,11 @@ Result<std::map<std::string, ManifestSubject>> ReadPeople(const std::string& pat
       return reader.ErrorHere("the row has " + std::to_string(cells.size()) + " values for " +
                               std::to_string(columns.size()) + " columns");
     }
+    const bool cut = cells.size() < 2;
     cells.resize(columns.size());
     const std::string id(cells[0]);
     double value = 0.0;
-    const bool unknown = cells[1].empty() || EqualsIgnoringCase(cells[1], "n/a");
+    const bool unknown = !cut && (cells[1].empty() || EqualsIgnoringCase(cells[1], "n/a"));
     if (!unknown && !ParseDouble(cells[1], &value)) {
       return reader.ErrorHere("mass_kg: " + NumberProblem(cells[1]));
     }
