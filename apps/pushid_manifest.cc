@@ -10,6 +10,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/overwrite_flag.h"
 #include "datasets/files/names.h"
+#include "datasets/inspection/inspection.h"
 #include "datasets/inspection/manifest_maker.h"
 
 const std::string kUnitHelp = "the files' unit: " + pushid::AnyName<pushid::LengthUnit>();
@@ -141,7 +142,7 @@ int Run() {
     LOG(WARNING) << "recording " << id << " has no push";
   std::printf("%zu recordings from %d files (%d others in the folder) written to %s\n",
               manifest.recordings.size(), made.files, made.others, path.c_str());
-  std::printf("check them with: pushid-inspect %s\n", path.c_str());
+  std::printf("check them with: pushid-inspect %s\n", ShellQuoted(path).c_str());
   return kDone;
 }
 

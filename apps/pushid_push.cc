@@ -47,7 +47,7 @@ DEFINE_double(height, pushid::SensorChoice{}.height_fraction,
               "force sensor: contact height as a fraction of the rod (1: the hip)");
 DEFINE_double(sensor_start, 0.0,
               "force sensor: its clock at frame 0, s; default: that of the motion if both are in "
-              "one file, otherwise 0");
+              "one file or the record holds half of the recording by it; else both begin at once");
 DEFINE_bool(estimate_offset, pushid::SensorSetup{}.estimate_offset,
             "force sensors: estimate the offset of their clocks from the motion's, of people "
             "whose feet move; offsets within their error are zero");

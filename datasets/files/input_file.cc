@@ -6,9 +6,11 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <new>
 #include <utility>
 
@@ -19,6 +21,7 @@ namespace {
 
 constexpr std::size_t kBufferSize = 1 << 18;    // fits a core's second-level cache
 constexpr std::size_t kLongestLine = 64 << 20;  // beyond it the file is no text
+constexpr std::size_t kTextShown = 512;         // bytes without a zero show a text
 
 // The encoding of a text that is not UTF-8, by its byte order mark, or by the zeros beside its
 // first characters; empty for other texts.
@@ -44,6 +47,37 @@ std::string_view OtherEncoding(std::string_view text) {
   return "";
 }
 
+// The file that a path means which was written for another system: with \ for /, or in letters of
+// another case; empty where there is none.
+std::string FileMeant(std::string path) {
+  namespace fs = std::filesystem;
+  std::replace(path.begin(), path.end(), '\\', '/');
+  std::error_code failed;
+  fs::path found;
+  for (const fs::path& part : fs::path(path)) {
+    fs::path next = found / part;
+    for (fs::directory_iterator at(found.empty() ? "." : found, failed), end;
+         !fs::exists(next, failed) && at != end; at.increment(failed)) {
+      const fs::path name = at->path().filename();
+      if (EqualsIgnoringCase(name.string(), part.string())) next = found / name;
+    }
+    if (!fs::exists(next, failed)) return "";
+    found = next;
+  }
+  return found.string();
+}
+
+Error NoSuchFile(const std::string& path) {
+  std::string message = "there is no such file";
+  const std::string meant = FileMeant(path);
+  if (!meant.empty()) message += "; did you mean " + meant + "?";
+  if (path.find('\\') != std::string::npos) message += "; folders are separated by /, not by \\";
+  if (std::any_of(path.begin(), path.end(), [](char c) { return c >= 0 && c < ' '; })) {
+    message += "; its name has a control character, which \\b, \\t, \\n, \\f and \\r mean in JSON";
+  }
+  return {message, path};
+}
+
 }  // namespace
 
 MaybeError CheckEncoding(const std::string& path, std::string_view* text) {
@@ -51,6 +85,13 @@ MaybeError CheckEncoding(const std::string& path, std::string_view* text) {
     return Error{"this text is encoded as " + name +
                      ", not as UTF-8; save it as UTF-8, or convert it: iconv -f " + name +
                      " -t UTF-8",
+                 path, 1};
+  }
+  const bool archive = text->substr(0, 4) == "PK\3\4";
+  if (archive || text->substr(0, kTextShown).find('\0') != std::string_view::npos) {
+    return Error{archive ? "this is no text, but a ZIP archive, as spreadsheets (.xlsx, .ods) are; "
+                           "save the table as CSV"
+                         : "this is no text, but a binary file",
                  path, 1};
   }
   if (text->substr(0, 3) == "\xEF\xBB\xBF") text->remove_prefix(3);
@@ -66,7 +107,7 @@ MaybeError InputFile::Open(const std::string& path) {
   if (path.empty()) return Error{"the file name is empty", "", 0};
   descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor_ < 0) {
-    if (errno == ENOENT) return Error{"there is no such file", path, 0};
+    if (errno == ENOENT) return NoSuchFile(path);
     return Error{std::string("cannot open it: ") + std::strerror(errno), path, 0};
   }
   struct stat info {};

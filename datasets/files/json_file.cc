@@ -138,6 +138,22 @@ struct ErrorFinder : nlohmann::detail::json_sax_acceptor<nlohmann::json> {
   }
 };
 
+// What people write by hand that JSON has not, at the place where the parser could not go on.
+std::string SyntaxHint(const std::string& text, std::size_t at) {
+  if (at >= text.size()) return "";
+  const std::string_view rest = std::string_view(text).substr(at);
+  const std::size_t before = at == 0 ? std::string::npos : text.find_last_not_of(" \t\r\n", at - 1);
+  if (rest[0] == '/' || rest[0] == '#') return "; JSON has no comments: take them out";
+  if (at > 0 && text[at - 1] == '\\') {
+    return "; in JSON a backslash is written \\\\, and folders are separated by / here";
+  }
+  if (rest[0] == '\'' || rest.substr(0, 2) == "\xE2\x80") return "; texts are in \"";
+  if ((rest[0] == ']' || rest[0] == '}') && before != std::string::npos && text[before] == ',') {
+    return "; no comma may stand before it";
+  }
+  return "";
+}
+
 Error SyntaxError(const std::string& path, const std::string& text) {
   ErrorFinder finder;
   nlohmann::json::sax_parse(text, &finder);
@@ -149,7 +165,7 @@ Error SyntaxError(const std::string& path, const std::string& text) {
   }
   if (message.rfind("parse error at line", 0) == 0)
     message = message.substr(message.find(": ") + 2);
-  Error error{"this is not valid JSON: " + message, path, 0};
+  Error error{"this is not valid JSON: " + message + SyntaxHint(text, finder.last_read), path, 0};
   SetPlace(text, finder.last_read, &error);
   return error;
 }
@@ -229,6 +245,13 @@ Result<JsonDocument> ReadJsonDocument(const std::string& path) {
 MaybeError WriteJson(const std::string& path, const nlohmann::ordered_json& content, int indent) {
   constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
   return WriteFileAtomically(path, content.dump(indent, ' ', false, kReplace) + '\n');
+}
+
+std::string SpeltOtherwise(const nlohmann::ordered_json& object, const std::string& key) {
+  for (const auto& [other, value] : object.items()) {
+    if (!ClosestName(other, {key}).empty()) return " (here it is spelt " + Quoted(other) + ")";
+  }
+  return "";
 }
 
 std::string MissingText(const std::vector<MissingKey>& missing) {

@@ -40,6 +40,9 @@ struct MissingKey {
 // "recording 'a': fps and id are missing; fps must be ...; id must be ...; recording 'b': ..."
 std::string MissingText(const std::vector<MissingKey>& missing);
 
+// " (here it is spelt 'Mass_kg')" for mass_kg, where the object has a key so like it; or nothing.
+std::string SpeltOtherwise(const nlohmann::ordered_json& object, const std::string& key);
+
 // Errors: unreadable file, JSON syntax (line, column), nesting deeper than 200.
 Result<JsonDocument> ReadJsonDocument(const std::string& path);
 
@@ -122,7 +125,9 @@ class JsonFields {
 
   bool Require(const char* key, const std::string& what) {
     if (Has(key)) return true;
-    if (object_.is_object()) missing_.push_back({label_, pointer_, key, what});
+    if (object_.is_object()) {
+      missing_.push_back({label_, pointer_, key, what + SpeltOtherwise(object_, key)});
+    }
     return false;
   }
 

@@ -173,6 +173,9 @@ bool TableCells::Next(std::string_view* cell) {
   const std::size_t end = rest_.find(separator_, BehindQuotes(rest_));
   more_ = end != std::string_view::npos;
   *cell = Trimmed(rest_.substr(0, end));
+  if (cell->size() > 1 && cell->front() == '"' && cell->back() == '"') {
+    *cell = Trimmed(cell->substr(1, cell->size() - 2));
+  }
   rest_.remove_prefix(more_ ? end + 1 : rest_.size());
   return true;
 }

@@ -30,16 +30,32 @@ double NumberIn(std::string_view comment) {
   return 0.0;
 }
 
-void ReadComment(std::string_view comment, PointMotion* motion) {
+// Whether a comment has whole words: "in m" is not in "in munich" or "in m/s".
+bool HoldsWords(std::string_view text, std::string_view words) {
+  const std::size_t at = text.find(words);
+  if (at == std::string_view::npos) return false;
+  const auto in_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '/' || c > '~'; };
+  const std::string_view rest = text.substr(at + words.size());
+  const bool part = (at > 0 && in_word(text[at - 1])) || (!rest.empty() && in_word(rest[0]));
+  return !part || HoldsWords(rest, words);
+}
+
+// Error: another unit than a comment before it.
+MaybeError ReadComment(const LineReader& reader, std::string_view comment, PointMotion* motion) {
   if (Holds(comment, "framerate") && motion->rate_hz == 0.0) motion->rate_hz = NumberIn(comment);
   for (const LengthUnitRow& unit : kLengthUnits) {
     const std::string name = unit.name;
-    if (Holds(comment, "x/" + name) || Holds(comment, "x[" + name + "]") ||
-        Holds(comment, "x(" + name + ")") || Holds(comment, "in " + name)) {
+    if (HoldsWords(comment, "x/" + name) || Holds(comment, "x[" + name + "]") ||
+        Holds(comment, "x(" + name + ")") || HoldsWords(comment, "in " + name)) {
+      if (motion->unit && *motion->unit != unit.value) {
+        return reader.ErrorHere("lengths are in " + name + ", but in " + NameOf(*motion->unit) +
+                                " by a line before");
+      }
       motion->unit = unit.value;
-      return;
+      return std::nullopt;
     }
   }
+  return std::nullopt;
 }
 
 // Rows (person, frame, position) gathered into points.
@@ -182,7 +198,6 @@ Result<PointMotion> ReadTrajectoryText(const std::string& path, const PointReadO
   if (MaybeError failed = reader.Open(path)) return *std::move(failed);
   PointMotion motion;
   motion.path = path;
-  motion.unit = LengthUnit::kMetre;
   TrajectoryRows rows;
   Times times;
   Columns columns;
@@ -190,17 +205,18 @@ Result<PointMotion> ReadTrajectoryText(const std::string& path, const PointReadO
   while (reader.NextNonBlank(&line)) {
     line = Trimmed(line);
     if (line.front() == '#') {
-      ReadComment(line.substr(1), &motion);
+      if (MaybeError failed = ReadComment(reader, line.substr(1), &motion)) return *failed;
       continue;
     }
     if (const std::optional<Columns> named = NamedColumns(line)) {
       columns = *named;
-      ReadComment(line, &motion);
+      if (MaybeError failed = ReadComment(reader, line, &motion)) return *failed;
     } else if (MaybeError failed = ReadRow(reader, line, columns, &rows, &times)) {
       return *std::move(failed);
     }
   }
   if (reader.error()) return *reader.error();
+  if (!motion.unit) motion.unit = LengthUnit::kMetre;
   if (motion.rate_hz == 0.0 && times.size() > 1) {
     const auto &first = *times.begin(), &last = *times.rbegin();
     motion.rate_hz = WholeFrameRate(static_cast<double>(last.first - first.first) /

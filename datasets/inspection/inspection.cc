@@ -111,6 +111,7 @@ void InspectLaboratory(const ManifestRecording& entry, const Recording& recordin
 
 constexpr std::size_t kMostSignals = 6;  // in the picture
 constexpr double kForceOnset = 20.0;     // N
+constexpr double kSameMass = 1.05;       // ratio of the masses of one person
 
 // Peak, impulse and onset of a force in N; keeps it for the picture. NaN: no value.
 void AddForce(const std::string& name, double rate_hz, std::vector<double> values,
@@ -211,7 +212,7 @@ void InspectCrowd(const PointMotion& motion, Inspection* found) {
   if (!odd.empty()) found->Warn(odd);
   found->Fact("use",
               "pushid-inspect --wave measures how a push travels; pushid-formation --formation=" +
-                  motion.path + " --formation_frame=" + std::to_string(frame) +
+                  ShellQuoted(motion.path) + " --formation_frame=" + std::to_string(frame) +
                   " places people as they stand there");
 }
 
@@ -247,6 +248,7 @@ MaybeError InspectManifest(Inspection* found) {
   std::vector<Finding> findings = FindingsOf(pendulums);
   findings.insert(findings.end(), facing.begin(), facing.end());
   for (const std::string& text : FindingTexts(findings)) found->Warn(text);
+  for (const std::string& text : MassTexts(pendulums)) found->Warn(text);
   const auto counts = [](const std::map<std::string, int>& of) {
     std::vector<std::string> texts;
     for (const auto& [name, count] : of) texts.push_back(name + " " + std::to_string(count));
@@ -478,6 +480,36 @@ Result<Inspection> Inspect(const std::string& path, const ColumnMapping& mapping
   }
   if (MaybeError failed = Look(mapping, &found)) return *std::move(failed);
   return found;
+}
+
+std::vector<std::string> MassTexts(const std::vector<PendulumRecording>& recordings) {
+  std::map<std::string, std::pair<double, double>> masses;  // least and largest, kg
+  for (const PendulumRecording& recording : recordings) {
+    for (int n = 0; n < recording.num_people(); ++n) {
+      const double mass = recording.scene.people[n].body.mass;
+      auto& [least, largest] =
+          masses.emplace(recording.subject_ids[n], std::pair(mass, mass)).first->second;
+      least = std::min(least, mass);
+      largest = std::max(largest, mass);
+    }
+  }
+  std::vector<std::string> texts;
+  for (const auto& [id, range] : masses) {
+    if (range.second <= kSameMass * range.first) continue;
+    texts.push_back(id + " weighs " + Rounded(range.first, 3) + " to " + Rounded(range.second, 3) +
+                    " kg: one id is one person; give different people different ids, or correct "
+                    "the masses");
+  }
+  return texts;
+}
+
+std::string ShellQuoted(const std::string& value) {
+  constexpr char kPlain[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=.,:/@%[]";
+  if (!value.empty() && value.find_first_not_of(kPlain) == std::string::npos) return value;
+  std::string quoted = "'";
+  for (const char c : value) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
 std::string InspectionText(const Inspection& inspection) {

@@ -13,6 +13,7 @@
 
 #include "datasets/files/error.h"
 #include "datasets/loading/foot_steps.h"
+#include "datasets/loading/pendulum_recording.h"
 #include "datasets/manifest/joint_mapping.h"
 
 namespace pushid {
@@ -66,6 +67,13 @@ struct Inspection {
 // says. Error: it cannot be read at all. Several manifests, "a.json,b.json", are one study; a C3D
 // file that is cut short is read as far as it goes, with a warning.
 Result<Inspection> Inspect(const std::string& path, const ColumnMapping& mapping = {});
+
+// What people weigh in one recording and in another where that differs by more than 5 %: an id is
+// one person. "S01 weighs 62.7 to 70 kg: ..."
+std::vector<std::string> MassTexts(const std::vector<PendulumRecording>& recordings);
+
+// A value as a shell takes it, in a command that is printed: quoted where it needs that.
+std::string ShellQuoted(const std::string& value);
 
 // "file: format", the facts and the warnings, one a line.
 std::string InspectionText(const Inspection& inspection);

@@ -122,11 +122,13 @@ class Maker {
       first.message += "; no other file can be read either";
       return first;
     }
+    const std::string unused = UnusedMasses();
     if (!massless_.empty()) {
       return Error{"no mass is given for " + ListOfNames({massless_.begin(), massless_.end()}) +
-                   "; list them in a file with the columns id,mass_kg (--masses)"};
+                   "; list them in a file with the columns id,mass_kg (--masses)" +
+                   (unused.empty() ? "" : "; " + unused)};
     }
-    WarnOfUnusedMasses();
+    if (!unused.empty()) made_.warnings.push_back(unused);
     CheckFirst();
     return std::move(made_);
   }
@@ -250,9 +252,10 @@ class Maker {
 
   ManifestSubject SubjectOf(const std::string& id) {
     const auto found = options_.people.find(id);
-    if (found != options_.people.end()) return found->second;
-    if (options_.mass_kg <= 0.0) massless_.insert(id);
-    return {id, options_.mass_kg};
+    ManifestSubject person = found != options_.people.end() ? found->second : ManifestSubject{id};
+    if (person.mass_kg <= 0.0) person.mass_kg = options_.mass_kg;
+    if (person.mass_kg <= 0.0) massless_.insert(id);
+    return person;
   }
 
   // A rate is read from every file, and the motion of the first: whether its people stand upright
@@ -296,7 +299,7 @@ class Maker {
                              "; if it is a sensor's record, convert it by pushid-push --sensor");
   }
 
-  void WarnOfUnusedMasses() {
+  std::string UnusedMasses() const {
     std::set<std::string> used;
     for (const ManifestRecording& recording : made_.manifest.recordings) {
       for (const ManifestSubject& subject : recording.subjects) used.insert(subject.id);
@@ -305,9 +308,9 @@ class Maker {
     for (const auto& [id, person] : options_.people) {
       if (used.count(id) == 0) unused.push_back(id);
     }
-    if (unused.empty()) return;
-    made_.warnings.push_back("the masses list " + ListOfNames(unused) +
-                             ", who is in no recording: are the ids spelt as in the file names?");
+    if (unused.empty()) return "";
+    return "the masses list " + ListOfNames(unused) +
+           ", who is in no recording: are the ids spelt as in the file names?";
   }
 
   const ManifestOptions& options_;
@@ -333,33 +336,37 @@ Result<std::map<std::string, ManifestSubject>> ReadPeople(const std::string& pat
     return reader.error() ? *reader.error() : Error{"the file lists no masses", path};
   }
   std::vector<std::string> columns;
-  for (const std::string_view cell : CellsOf(line, ',')) columns.emplace_back(cell);
-  if (columns.size() < 2 || columns[0] != "id" || columns[1] != "mass_kg") {
+  const char separator = SeparatorOf(line);
+  for (const std::string_view cell : CellsOf(line, separator)) columns.emplace_back(cell);
+  if (columns.size() < 2 || !EqualsIgnoringCase(columns[0], "id") ||
+      !EqualsIgnoringCase(columns[1], "mass_kg")) {
     return reader.ErrorHere(
         "the first line must be id,mass_kg, perhaps with further columns of what is known of "
         "people (group, height, ...), not " +
         Quoted(line));
   }
   while (reader.NextNonBlank(&line)) {
-    std::vector<std::string_view> cells = CellsOf(line, ',');
+    std::vector<std::string_view> cells = CellsOf(line, separator);
     if (cells.size() > columns.size()) {
       return reader.ErrorHere("the row has " + std::to_string(cells.size()) + " values for " +
                               std::to_string(columns.size()) + " columns");
     }
+    const bool cut = cells.size() < 2;
     cells.resize(columns.size());
     const std::string id(cells[0]);
     double value = 0.0;
-    if (!ParseDouble(cells[1], &value)) {
+    const bool unknown = !cut && (cells[1].empty() || EqualsIgnoringCase(cells[1], "n/a"));
+    if (!unknown && !ParseDouble(cells[1], &value)) {
       return reader.ErrorHere("mass_kg: " + NumberProblem(cells[1]));
     }
-    if (!(value > 0.0 && value <= kHeaviestPerson)) {
+    if (!unknown && !(value > 0.0 && value <= kHeaviestPerson)) {
       return reader.ErrorHere("a mass in kg is above 0 and at most " + Rounded(kHeaviestPerson) +
                               ", not " + Rounded(value));
     }
     ManifestSubject person{id, value};
     for (std::size_t i = 2; i < cells.size(); ++i) {
       double number = 0.0;
-      if (cells[i].empty()) continue;  // not known
+      if (cells[i].empty() || EqualsIgnoringCase(cells[i], "n/a")) continue;  // not known
       if (ParseDouble(cells[i], &number)) {
         person.known.numbers[columns[i]] = number;
       } else {

@@ -56,8 +56,8 @@ struct MadeManifest {
 // read. A recording with a file that cannot be read is left out.
 Result<MadeManifest> MakeManifest(const ManifestOptions& options);
 
-// People from a CSV file with the columns id and mass_kg, and any others: numbers and texts that
-// are known of people, as group and height (datasets/README.md).
+// People from a CSV file with the columns id and mass_kg (0 where a cell is empty or n/a), and any
+// others: numbers and texts that are known of people, as group and height (datasets/README.md).
 Result<std::map<std::string, ManifestSubject>> ReadPeople(const std::string& path);
 
 }  // namespace pushid

@@ -21,6 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr char kSchema[] = "pushid-manifest/1";
 constexpr int kAnyFrame = 1 << 30;
 constexpr double kHighestPush = 3.0;  // m
 
@@ -443,6 +444,10 @@ Result<Manifest> ReadManifest(const std::string& path) {
     return document.ErrorAt("/format", "this is a " + top.OptionalText("format", "file") +
                                            ", no manifest of recordings");
   }
+  const std::string schema = top.OptionalText("schema", kSchema);
+  if (schema != kSchema && schema.rfind("pushid-manifest/", 0) == 0) {
+    return document.ErrorAt("/schema", Quoted(schema) + " is newer; update pushid to read it");
+  }
   top.Require("recordings", "a list of recordings");
   const Json& recordings = top.List("recordings");
   if (!top.failed() && recordings.empty()) {
@@ -501,7 +506,7 @@ ManifestRecording EntryOf(const Recording& recording) {
 
 MaybeError WriteManifest(const std::string& path, const Manifest& manifest) {
   Json json = Json::object();
-  if (manifest.path.empty()) json["schema"] = "pushid-manifest/1";  // what was read stays as it was
+  if (manifest.path.empty()) json["schema"] = kSchema;  // what was read stays as it was
   if (manifest.json->is_object()) json.update(*manifest.json);
   if (manifest.length_unit) {
     const std::string name = NameOf(*manifest.length_unit);

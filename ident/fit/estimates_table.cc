@@ -8,6 +8,7 @@
 #include <set>
 
 #include "datasets/files/number_text.h"
+#include "datasets/inspection/inspection.h"
 #include "ident/model/model_rollout.h"
 #include "ident/problem/behaviour.h"
 #include "ident/uncertainty/covariance.h"
@@ -143,7 +144,6 @@ std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const S
 
 namespace {
 
-constexpr double kSameMass = 1.05;     // ratio of the masses of one person
 constexpr double kPullToTell = 0.5;    // standard errors
 constexpr double kHeldByDemand = 0.9;  // share of what determines a parameter
 
@@ -174,27 +174,6 @@ void AddClusterWarning(const Uncertainty& u, Warnings* warnings) {
     const std::string many = unit == "person" ? "people" : "recordings";
     warnings->emplace_back("the independent units are " + std::to_string(u.num_clusters) + " " +
                            many + ", fewer than ten: the standard errors are themselves uncertain");
-  }
-}
-
-// An id is one person (covariance.h), who weighs nearly the same in all recordings.
-void AddMassWarnings(const std::vector<PendulumRecording>& recordings, Warnings* warnings) {
-  std::map<std::string, std::pair<double, double>> masses;  // least and largest, kg
-  for (const PendulumRecording& recording : recordings) {
-    for (int n = 0; n < recording.num_people(); ++n) {
-      const double mass = recording.scene.people[n].body.mass;
-      auto& [least, largest] =
-          masses.emplace(recording.subject_ids[n], std::pair(mass, mass)).first->second;
-      least = std::min(least, mass);
-      largest = std::max(largest, mass);
-    }
-  }
-  for (const auto& [id, range] : masses) {
-    const auto& [least, largest] = range;
-    if (largest <= kSameMass * least) continue;
-    warnings->emplace_back(id + " weighs " + Rounded(least, 3) + " to " + Rounded(largest, 3) +
-                           " kg: one id is one person; give different people different ids, or "
-                           "correct the masses");
   }
 }
 
@@ -284,7 +263,7 @@ Warnings FitWarnings(const FitProblem& problem, const FitResult& result) {
                           " ends " + Rounded(-d->pushed_advance, 2) + " m behind the start (" +
                           SettlingSimulationName(*d, SettingsDiffer(result.behaviour)) + ")");
   }
-  AddMassWarnings(problem.recordings(), &warnings);
+  for (std::string& text : MassTexts(problem.recordings())) warnings.emplace_back(std::move(text));
   AddClusterWarning(result.uncertainty, &warnings);
   AddLineUpWarning(problem, &warnings);
   AddSettlingWarning(result.uncertainty, model, problem.map().fitted.size(), &warnings);

@@ -36,6 +36,20 @@ MaybeError ApplyStage(OptionStage stage, const GivenOptions& given, FitOptions* 
   return std::nullopt;
 }
 
+// The parts of a list that is given: "mu=3,Kp_theta" of --fix.
+std::vector<std::string> ItemsOf(const GivenOptions& given, const std::string& option) {
+  const std::string* list = Find(given, option);
+  return list != nullptr ? SplitList(*list) : std::vector<std::string>();
+}
+
+std::string NameIn(const std::string& item) { return item.substr(0, item.find('=')); }
+
+bool IsListed(const GivenOptions& given, const std::string& option, const std::string& name) {
+  const std::vector<std::string> items = ItemsOf(given, option);
+  return std::any_of(items.begin(), items.end(),
+                     [&name](const std::string& item) { return NameIn(item) == name; });
+}
+
 // Options that were given but act on nothing: an error that says what is missing.
 MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
   const auto& network = options.model.learned;
@@ -78,6 +92,10 @@ void PoolOnlyFree(FitOptions* options) {
 
 Result<FitOptions> OverPreset(const std::string& preset, const GivenOptions& given,
                               const GivenOptions& must_act) {
+  for (const std::string& item : ItemsOf(given, "free")) {
+    if (!IsListed(given, "fix", NameIn(item))) continue;
+    return Error{NameIn(item) + " is both fixed (--fix) and free (--free); leave one of them out"};
+  }
   Result<FitOptions> made = StartPreset(preset);
   if (!made.ok()) return made.error();
   FitOptions o = std::move(made.value());
@@ -140,6 +158,14 @@ Result<FitOptions> OverPresetOf(const std::vector<PendulumRecording>& recordings
 }  // namespace
 
 GivenOptions Merged(GivenOptions given, const GivenOptions& more) {
+  for (auto& [option, list] : given) {
+    if (option != "fix" && option != "free") continue;
+    std::vector<std::string> kept;
+    for (const std::string& item : SplitList(list)) {
+      if (!IsListed(more, option == "fix" ? "free" : "fix", NameIn(item))) kept.push_back(item);
+    }
+    list = Joined(kept, ",");
+  }
   for (const auto& option : more) {
     const auto same = std::find_if(given.begin(), given.end(),
                                    [&](const auto& one) { return one.first == option.first; });
@@ -210,9 +236,8 @@ std::vector<FitOptions> FitSetup::OtherStances(const std::vector<PendulumRecordi
 
 std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOptions& options) {
   std::vector<std::string> warnings;
-  const std::string* fixed = Find(given, "fix");
-  for (const std::string& item : SplitList(fixed != nullptr ? *fixed : "")) {
-    const ParameterSpec* spec = options.table.Find(item.substr(0, item.find('=')));
+  for (const std::string& item : ItemsOf(given, "fix")) {
+    const ParameterSpec* spec = options.table.Find(NameIn(item));
     if (spec == nullptr || Acts(spec->id, options.model)) continue;
     warnings.push_back("--fix=" + item + " does nothing: " + spec->name +
                        " does not act under this model");

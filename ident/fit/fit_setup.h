@@ -18,7 +18,7 @@ namespace pushid {
 // Names of rows of the option table with their values in words.
 using GivenOptions = std::vector<std::pair<std::string, std::string>>;
 
-// `more` over `given`: what both name has the value of `more`.
+// `more` over `given`: what both name has the value of `more`, and what it fixes is not free.
 GivenOptions Merged(GivenOptions given, const GivenOptions& more);
 
 // "--self_force=linear --push_tail=none". Errors: a word that is no option of a fit.

@@ -167,13 +167,11 @@ Result<PathEnd> ParsePathEnd(const std::string& flag, const std::string& text, b
   if (!values.ok()) return values.error();
   PathEnd end;
   end.rates_held = always;
-  bool seen[8] = {};
   for (const NamedValue& named : values.value()) {
     bool known = false;
     for (int i = 0; i < 8; ++i) {
       if (named.name != kEndNames[i]) continue;
-      if (seen[i]) return Error{flag + " names " + named.name + " twice"};
-      known = seen[i] = true;
+      known = true;
       (i < 4 ? end.state.q[i] : end.state.qd[i - 4]) = named.value;
       if (i >= 4) end.rates_held = true;
     }

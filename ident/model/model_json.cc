@@ -2,6 +2,7 @@
 #include "ident/model/model_json.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/json_file.h"
@@ -11,6 +12,9 @@ namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr char kSchema[] = "pushid-model/1";
+constexpr double kRounding = 1e-6;  // of values that are written in other digits
 
 // What the types alone do not ensure and readers of a result rely on.
 void CheckConsistent(const FitResult& result) {
@@ -27,6 +31,14 @@ void CheckConsistent(const FitResult& result) {
   }
   if (!(result.parameters[kTailTime] > 0.0)) {
     throw WrongEntry("values/tail_time", "tail_time must be positive");
+  }
+  for (const Estimate& e : result.estimates) {
+    const ParameterSpec* spec = result.options.table.Find(e.name);
+    const double used = spec != nullptr ? result.parameters[spec->id] : e.value;
+    if (std::fabs(e.value - used) <= kRounding * std::fabs(used)) continue;
+    throw WrongEntry("parameters/" + e.name,
+                     e.name + " is " + Rounded(e.value) + " here and " + Rounded(used) +
+                         " under 'values', by which people are predicted; give both one value");
   }
   const auto check = [&result](const std::string& path, const std::string& unit,
                                const std::map<std::string, Estimate>& pooled) {
@@ -128,8 +140,7 @@ class ModelReader {
 }  // namespace
 
 nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
-  Json json = {
-      {"schema", "pushid-model/1"}, {"format", "pushid model"}, {"format_version", kModelFormat}};
+  Json json = {{"schema", kSchema}, {"format", "pushid model"}, {"format_version", kModelFormat}};
   json.get_ref<Json::object_t&>().reserve(64);  // it would copy all of itself where it grows
   JsonWriter writer(&json);
   ModelFields(writer, const_cast<FittedModel&>(model), run);
@@ -147,7 +158,8 @@ Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, cons
                      (named ? "; its schema is " + json["schema"].get<std::string>() : ""),
                  file};
   }
-  if (json["format_version"] > kModelFormat) {
+  const bool other = json.contains("schema") && json["schema"] != kSchema;
+  if (other || json["format_version"] > kModelFormat) {
     return Error{"written by a newer pushid; update pushid to read it", file};
   }
   const auto damaged = [&](const std::string& part, const std::exception& exception) {

@@ -135,12 +135,6 @@ std::vector<std::string> NonEmptyParts(const std::string& text, char separator) 
   return parts;
 }
 
-bool ParseNumber(const std::string& text, double* value) {
-  char* end = nullptr;
-  *value = std::strtod(text.c_str(), &end);
-  return !text.empty() && *end == '\0' && std::isfinite(*value);
-}
-
 Error UnknownName(const std::string& name, const std::string& flag, const ParameterTable& table) {
   std::vector<std::string> names;
   for (const ParameterSpec& spec : table.specs) names.push_back(spec.name);
@@ -160,10 +154,25 @@ Result<Item> ParseItem(const std::string& text, const std::string& flag) {
   Item item{text.substr(0, equals)};
   if (equals == std::string::npos) return item;
   item.has_value = true;
-  if (!ParseNumber(text.substr(equals + 1), &item.value)) {
+  if (!ParseDouble(text.substr(equals + 1), &item.value)) {
     return Error{flag + ": '" + text + "' has no number after '='"};
   }
   return item;
+}
+
+// Comma-separated; a name stands once, as nobody knows which of two values is meant.
+Result<std::vector<Item>> ParseItems(const std::string& list, const std::string& flag) {
+  std::vector<Item> items;
+  std::set<std::string> names;
+  for (const std::string& text : NonEmptyParts(list, ',')) {
+    const Result<Item> item = ParseItem(text, flag);
+    if (!item.ok()) return item.error();
+    if (!names.insert(item.value().name).second) {
+      return Error{flag + " names " + item.value().name + " twice"};
+    }
+    items.push_back(item.value());
+  }
+  return items;
 }
 
 MaybeError CheckInBounds(const ParameterSpec& spec, double value, const std::string& flag) {
@@ -176,25 +185,25 @@ MaybeError CheckInBounds(const ParameterSpec& spec, double value, const std::str
 
 MaybeError Assign(const std::string& list, const std::string& flag, std::optional<bool> make_free,
                   bool value_needed, ParameterTable* table) {
-  for (const std::string& text : NonEmptyParts(list, ',')) {
-    const Result<Item> item = ParseItem(text, flag);
-    if (!item.ok()) return item.error();
-    ParameterSpec* spec = table->Find(item.value().name);
-    if (spec == nullptr) return UnknownName(item.value().name, flag, *table);
-    if (value_needed && !item.value().has_value) {
-      return Error{flag + ": '" + text + "' needs a value, as in " + text + "=1"};
+  const Result<std::vector<Item>> items = ParseItems(list, flag);
+  if (!items.ok()) return items.error();
+  for (const Item& item : items.value()) {
+    ParameterSpec* spec = table->Find(item.name);
+    if (spec == nullptr) return UnknownName(item.name, flag, *table);
+    if (value_needed && !item.has_value) {
+      return Error{flag + ": '" + item.name + "' needs a value, as in " + item.name + "=1"};
     }
-    if (item.value().has_value) {
+    if (item.has_value) {
       // A fixed parameter may sit on zero, where a log scale has no place for a free one; not
       // those that divide: the tail's time, and those of feet that stand.
       const bool free_after = make_free.value_or(spec->free);
       const bool may_be_zero =
           !free_after && spec->transform == Transform::kLog && spec->id != kTailTime &&
           !(spec->id >= kSupportFront && spec->id <= kStepSwing && spec->id != kStepGain);
-      if (!may_be_zero || item.value().value != 0.0) {
-        if (MaybeError error = CheckInBounds(*spec, item.value().value, flag)) return error;
+      if (!may_be_zero || item.value != 0.0) {
+        if (MaybeError error = CheckInBounds(*spec, item.value, flag)) return error;
       }
-      spec->nominal = item.value().value;
+      spec->nominal = item.value;
     }
     if (make_free.has_value()) spec->free = *make_free;
     spec->named = true;
@@ -204,16 +213,18 @@ MaybeError Assign(const std::string& list, const std::string& flag, std::optiona
 }
 
 MaybeError AddPriors(const std::string& list, ParameterTable* table) {
+  std::set<std::string> names;
   for (const std::string& text : NonEmptyParts(list, ',')) {
     const std::vector<std::string> parts = NonEmptyParts(text, ':');
     Prior prior{};
-    if (parts.size() != 3 || !ParseNumber(parts[1], &prior.mean) ||
-        !ParseNumber(parts[2], &prior.sigma) || prior.sigma <= 0.0) {
+    if (parts.size() != 3 || !ParseDouble(parts[1], &prior.mean) ||
+        !ParseDouble(parts[2], &prior.sigma) || prior.sigma <= 0.0) {
       return Error{"--prior: '" + text +
                    "' is not name:mean:sigma with sigma > 0, as in mu:100:30"};
     }
     ParameterSpec* spec = table->Find(parts[0]);
     if (spec == nullptr) return UnknownName(parts[0], "--prior", *table);
+    if (!names.insert(parts[0]).second) return Error{"--prior names " + parts[0] + " twice"};
     if (MaybeError error = CheckInBounds(*spec, prior.mean, "--prior")) return error;
     spec->prior = prior;
     spec->named = true;
@@ -256,13 +267,11 @@ Result<std::vector<CovariatesOfParameter>> ParseCovariates(const std::string& te
 
 Result<std::vector<NamedValue>> ParseAssignments(const std::string& text, const std::string& flag) {
   std::vector<NamedValue> values;
-  for (const std::string& part : NonEmptyParts(text, ',')) {
-    const Result<Item> item = ParseItem(part, flag);
-    if (!item.ok()) return item.error();
-    if (!item.value().has_value) {
-      return Error{flag + ": '" + part + "' is not name=value"};
-    }
-    values.push_back({item.value().name, item.value().value});
+  const Result<std::vector<Item>> items = ParseItems(text, flag);
+  if (!items.ok()) return items.error();
+  for (const Item& item : items.value()) {
+    if (!item.has_value) return Error{flag + ": '" + item.name + "' is not name=value"};
+    values.push_back({item.name, item.value});
   }
   return values;
 }

@@ -7,6 +7,7 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
+#include "datasets/inspection/inspection.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/behaviour.h"
 #include "ident/report/report_text.h"
@@ -21,24 +22,6 @@ constexpr char kModelFlag[] = "--model=FILE";
 
 std::string ManifestOf(const Provenance& provenance) {
   return provenance.manifest.empty() ? kSomeManifest : provenance.manifest;
-}
-
-// gflags writes 0.2 as 0.20000000000000001.
-std::string Shortest(const std::string& value) {
-  double number = 0.0;
-  const bool fraction = value.find_first_of(".e") != std::string::npos;
-  if (!fraction || !ParseDouble(value, &number)) return value;
-  const std::string shortest = DoubleText(number);
-  return shortest.size() < value.size() ? shortest : value;
-}
-
-std::string ShellQuoted(const std::string& value) {
-  constexpr char kPlain[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=.,:/@%[]";
-  if (value.find_first_not_of(kPlain) == std::string::npos) return value;
-  std::string quoted = "'";
-  for (const char c : value) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
 }
 
 }  // namespace
@@ -70,7 +53,7 @@ FitCommand::FitCommand(std::string program, const Provenance& provenance)
     const auto at = provenance.configuration.find(name);
     if (at == provenance.configuration.end()) continue;
     if (std::find(changed.begin(), changed.end(), name) == changed.end()) continue;
-    Set(name, Shortest(at->second));
+    Set(name, at->second);
   }
 }
 
@@ -113,6 +96,7 @@ void FitCommand::TakeOut(const std::string& flag, const std::string& name, const
 FitCommand& FitCommand::Append(const std::string& flag, const std::string& item) {
   if (flag == "fix") {
     const std::string name = item.substr(0, item.find('='));
+    TakeOut("fix", name, "");
     TakeOut("free", name, "");
     TakeOut("pool", name, "none");
   }

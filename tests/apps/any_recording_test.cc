@@ -180,9 +180,10 @@ TEST_F(AnyRecordingTest, Manifest) {
   EXPECT_TRUE(Contains(run.out, "12 recordings from 12 files"));
   run = Succeeded(RunApp("pushid-fit", {"--recordings=" + Path("made.json")}));
   // Measured pushes, the default, have no tail to fit.
-  Succeeded(RunApp("pushid-manifest", {"--folder=" + folder_.string(), pattern, push, "--mass=80",
-                                       "--out=" + Path("measured.json")}));
-  const std::string measured = "--recordings=" + Path("measured.json");
+  run = Succeeded(RunApp("pushid-manifest", {"--folder=" + folder_.string(), pattern, push,
+                                             "--mass=80", "--out=" + Path("measured it.json")}));
+  EXPECT_TRUE(Contains(run.out, "pushid-inspect '" + Path("measured it.json") + "'\n"));
+  const std::string measured = "--recordings=" + Path("measured it.json");
   run = Succeeded(RunApp("pushid-fit", {measured}));
   EXPECT_TRUE(Contains(run.out, "Warning: every push is external"));
   run = RunApp("pushid-fit", {measured, "--fix=mu,Kp_theta,Kd_theta,a_x"});

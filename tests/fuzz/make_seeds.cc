@@ -149,6 +149,10 @@ void StudySeeds(const std::string& out) {
   const Result<std::string> manifest = ReadWholeFile(folder + "/manifest.json");
   if (!manifest.ok()) Check(manifest.error());
   Check(WriteFileAtomically(In(out, "manifest", "marked.json"), "\xEF\xBB\xBF" + manifest.value()));
+  // Two that crashed when marks were read as a part of the text.
+  Check(WriteFileAtomically(In(out, "manifest", "marked_list.json"),
+                            "\xEF\xBB\xBF{\"recordings\":[]}"));
+  Check(WriteFileAtomically(In(out, "manifest", "marked_empty.json"), "\xEF\xBB\xBF{}"));
   std::filesystem::remove_all(folder);
   Check(WriteFileAtomically(
       In(out, "bvh", "small.bvh"),

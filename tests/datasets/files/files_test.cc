@@ -149,6 +149,52 @@ TEST_F(InputFileTest, AByteOrderMarkIsSkippedOnce) {
   EXPECT_EQ(line, kByteOrderMark);
 }
 
+TEST_F(InputFileTest, WhatIsNoTextIsNamed) {
+  using namespace std::string_literals;
+  const std::pair<std::string, const char*> cases[] = {
+      {"PK\3\4\x14\0\6\0"s, "a ZIP archive, as spreadsheets (.xlsx, .ods) are"},
+      {"PK\3\4\n\0\0\0"s, "a ZIP archive"},  // a newline among its first bytes
+      {"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1\0\0"s, "a binary file"},  // .xls
+      {"\x1F\x8B\x08\0\0"s, "a binary file"},                      // gzip
+      {"\2P\0\0"s, "a binary file"},                               // C3D
+      {"\x89PNG\r\n\x1A\n\0"s, ""},                                // its first line is text
+      {"time,force\0\n"s, "a binary file"},
+      {"time,force\n0,\0\n"s, ""},
+      {"PK,MK\n"s, ""},
+      {"\xC3\xA9t\xC3\xA9,x\n"s, ""},
+  };
+  for (const auto& [bytes, says] : cases) {
+    LineReader reader;
+    ASSERT_FALSE(reader.Open(WriteText("a.csv", bytes)));
+    std::string_view line;
+    EXPECT_EQ(reader.Next(&line), *says == '\0') << bytes;
+    if (*says == '\0') continue;
+    EXPECT_TRUE(Contains(reader.error()->ToString(), std::string("this is no text, but ") + says));
+  }
+}
+
+// A manifest that was written on another system.
+TEST_F(InputFileTest, NamesThatOtherSystemsTake) {
+  std::filesystem::create_directories(folder_ / "Bvh/Day 1");
+  const std::string there = WriteText("Bvh/Day 1/S01_weak.bvh", "x");
+  const auto message = [this](const std::string& name) {
+    return InputFile().Open(Path(name))->ToString();
+  };
+  for (const char* name :
+       {"Bvh/Day 1/s01_weak.bvh", "bvh/day 1/S01_WEAK.BVH", "BVH/Day 1/S01_weak.bvh",
+        "Bvh/Day 1/S01_weak.Bvh", "bvh/DAY 1/s01_weak.bvh"}) {
+    EXPECT_TRUE(Contains(message(name), "no such file; did you mean " + there + "?")) << name;
+    EXPECT_FALSE(Contains(message(name), "separated")) << name;
+  }
+  for (const char* name : {"Bvh\\Day 1\\S01_weak.bvh", "bvh\\day 1/s01_weak.bvh"}) {
+    EXPECT_TRUE(Contains(message(name), "did you mean " + there + "?; folders are separated by /"));
+  }
+  EXPECT_TRUE(Contains(message("gone\\a.bvh"), "no such file; folders are separated by /"));
+  EXPECT_TRUE(Contains(message("Bvh\tS01.bvh"), "a control character, which \\b, \\t"));
+  const std::string other = message("Bvh/Day 1/S01_strong.bvh");
+  EXPECT_EQ(other.substr(other.rfind(':')), ": there is no such file");
+}
+
 // `text` of ASCII in units of `bytes`, with a byte order mark or without.
 std::string Encoded(const std::string& text, int bytes, bool big_endian, bool mark) {
   std::string encoded;

@@ -72,6 +72,26 @@ TEST_F(TrajectoriesTest, UnitsAsPeopleWriteThem) {
   }
 }
 
+// A unit is a word, and not the beginning of one; of two units nobody knows which is meant.
+TEST_F(TrajectoriesTest, UnitsAreWholeWords) {
+  const auto unit = [this](const std::string& comments) {
+    return ReadTrajectoryText(WriteText("a.txt", "# framerate: 8\n" + comments + "1 0 50 0\n"))
+        .value()
+        .unit;
+  };
+  for (const char* words :
+       {"filmed in munich", "in march", "in m\xC3\xBCnchen", "made in mm2 lab", "within cm_tools",
+        "speeds in m/s", "max/mm2", "in mechelen, in cmu's hall", "in 2 rows", "in"}) {
+    EXPECT_EQ(unit(std::string("# ") + words + "\n"), LengthUnit::kMetre) << words;
+    EXPECT_EQ(unit(std::string("# id frame x/cm y/cm\n# ") + words + "\n"), LengthUnit::kCentimetre)
+        << words;
+  }
+  EXPECT_EQ(unit("# in munich, in mm\n"), LengthUnit::kMillimetre);
+  EXPECT_EQ(unit("# in mm.\n# id frame x/mm y/mm\n"), LengthUnit::kMillimetre);
+  EXPECT_TRUE(Contains(TextMessage("# framerate: 8\n# id frame x/cm\n# lengths in m\n1 0 0 0\n"),
+                       ":3: lengths are in m, but in cm by a line before"));
+}
+
 // Somebody may stand at the origin, and planes have no height.
 TEST_F(TrajectoriesTest, Planes) {
   const PointMotion read =

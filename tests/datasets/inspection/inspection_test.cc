@@ -17,6 +17,7 @@
 namespace pushid {
 namespace {
 
+constexpr std::size_t kNone = std::string::npos;
 const Eigen::Vector3d kHidden = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 
 class InspectionTest : public RecordingFolderTest {
@@ -230,8 +231,31 @@ TEST_F(InspectionTest, OtherFiles) {
   EXPECT_TRUE(Contains(InspectionText(both), "2, 2 can be read, 2 have a push"));
   EXPECT_TRUE(Contains(Of("none.bvh"), "there is no such file"));
   EXPECT_TRUE(Contains(Of(""), "this is a folder"));
+  manifest_.recordings[0].subjects[0].mass_kg = 62.7;
+  manifest_.recordings.push_back(manifest_.recordings[0]);
+  manifest_.recordings[1].id = "a";
+  for (const auto& [mass, told] : {std::pair(65.0, false), {70.0, true}}) {
+    manifest_.recordings[1].subjects[0].mass_kg = mass;
+    ASSERT_FALSE(WriteManifest(Path("two.json"), manifest_));
+    EXPECT_EQ(Of("two.json").find("s1 weighs 62.7 to 70 kg: one id is one person") != kNone, told);
+  }
   WriteText("x.dat", "hello");
   EXPECT_TRUE(Contains(Of("x.dat"), "unknown kind of file"));
+}
+
+// Commands that are printed can be pasted.
+TEST_F(InspectionTest, NamesInCommandsAreQuoted) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"a/b-c_1.txt", "a/b-c_1.txt"}, {"a b", "'a b'"},
+      {"it's", "'it'\\''s'"},         {"", "''"},
+      {"$HOME", "'$HOME'"},           {"a;b", "'a;b'"},
+      {"\"q\"", "'\"q\"'"},           {"a&b", "'a&b'"},
+      {"*.c3d", "'*.c3d'"},           {"~x", "'~x'"},
+      {"M\xC3\xBC", "'M\xC3\xBC'"},
+  };
+  for (const auto& [value, quoted] : cases) EXPECT_EQ(ShellQuoted(value), quoted);
+  WriteText("the crowd.txt", "# framerate: 8\n1 0 0 0\n2 0 1 0\n");
+  EXPECT_TRUE(Contains(Of("the crowd.txt"), "--formation='" + Path("the crowd.txt") + "' --form"));
 }
 
 }  // namespace

@@ -281,9 +281,44 @@ TEST_F(ManifestMakerTest, Masses) {
            {"id,mass_kg\nanna\n", ":2: mass_kg: a number is missing"},
            {"id,mass_kg\nanna,-1\n", ":2: a mass in kg is above 0"},
            {"id,mass_kg\nanna,60\nanna,61\n", ":3: the mass of 'anna' was given before"},
-           {"id,mass_kg\n", "lists no masses"}}) {
+           {"id,mass_kg\n", "lists no masses"},
+           {"id,weight\nanna,138\n", ":1: the first line must be id,mass_kg"},
+           {"id;mass_kg\nanna;62,7\n", ":2: mass_kg: '62,7' is not a number"},
+           {"id,mass_kg\nanna,138 lb\n", ":2: mass_kg: '138 lb' is not a number"}}) {
     EXPECT_TRUE(Contains(ReadPeople(WriteText("m.csv", text)).error().ToString(), says));
   }
+}
+
+// As spreadsheets write them.
+TEST_F(ManifestMakerTest, MassesInOtherDialects) {
+  for (const char* text : {"id,mass_kg\nanna,\"62.7\"\n", "\"id\",\"mass_kg\"\n\"anna\",\"62.7\"\n",
+                           "ID,Mass_kg\nanna,62.7\n", "id;mass_kg\nanna;62.7\n",
+                           "id\tmass_kg\nanna\t62.7\n", "\xEF\xBB\xBFid,mass_kg\r\nanna,62.7\r\n",
+                           "id,mass_kg\nanna,62.7\nben,n/a\n", "id,mass_kg\nben,\nanna, 62.7 \n",
+                           "id,mass_kg,note\nanna,62.7,\"a, b\"\n", "id,mass_kg\n\nanna,+62.7\n"}) {
+    EXPECT_EQ(Unwrapped(ReadPeople(WriteText("m.csv", text))).at("anna").mass_kg, 62.7) << text;
+  }
+}
+
+// A mass that is not known matters where the person is recorded and --mass says nothing.
+TEST_F(ManifestMakerTest, MassesThatAreNotKnown) {
+  const auto people = [this](const std::string& rows) {
+    options_.people = Unwrapped(ReadPeople(WriteText("m.csv", "id,mass_kg,group\n" + rows)));
+    return MakingMessage();
+  };
+  options_.mass_kg = 0.0;
+  EXPECT_EQ(people("anna,62,a\nben,80,b\ncleo,n/a,a\n"), "no error");
+  EXPECT_TRUE(Contains(people("anna,62,a\nben,n/a,b\n"), "no mass is given for ben; list"));
+  EXPECT_TRUE(
+      Contains(people("Anna,62,a\nben,80,b\n"),
+               "no mass is given for anna; list them in a file with the columns id,mass_kg "
+               "(--masses); the masses list Anna, who is in no recording: are the ids spelt"));
+  options_.mass_kg = 70.0;
+  EXPECT_EQ(people("anna,62,a\nben,n/a,b\n"), "no error");
+  const ManifestSubject ben =
+      Unwrapped(MakeManifest(options_)).manifest.recordings.back().subjects[0];
+  EXPECT_EQ(ben.mass_kg, 70.0);
+  EXPECT_EQ(ben.known.texts.at("group"), "b");
 }
 
 }  // namespace

@@ -322,6 +322,65 @@ TEST_F(ManifestTest, TheRateMayBeLeftOut) {
       nlohmann::json::parse(ReadText(Path("again.json")))["recordings"][0].contains("fps"));
 }
 
+// JSON as people write it by hand, and what it says to do.
+TEST_F(ManifestTest, WhatJsonHasNot) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"// mine\n{}", ":1:1: this is not valid JSON"},
+      {"// mine\n{}", "; JSON has no comments: take them out"},
+      {"{\n # mine\n}", ":2:2: "},
+      {"{\n # mine\n}", "JSON has no comments"},
+      {"{\"recordings\": [] /* mine */}", "JSON has no comments"},
+      {"{\"recordings\": [1,]}", ":1:19: "},
+      {"{\"recordings\": [1,]}", "no comma may stand before it"},
+      {"{\"recordings\": [],\n}", "no comma may stand before it"},
+      {"{'recordings': []}", "texts are in \""},
+      {"{\"a\": 'b'}", "texts are in \""},
+      {"{\xE2\x80\x9Crecordings\xE2\x80\x9D: []}", "texts are in \""},
+      {"{\"bvh\": [\"bvh\\S01.bvh\"]}", "in JSON a backslash is written \\\\"},
+      {"{\"bvh\": [\"C:\\data\\S01.bvh\"]}", "folders are separated by / here"},
+      {"[{\"id\": \"a\"}]", "manifest: must be an object { }, not a list"},
+  };
+  for (const auto& [text, says] : cases) {
+    EXPECT_TRUE(Contains(ProblemOf(ReadManifest(WriteText("manifest.json", text))), says)) << text;
+  }
+}
+
+TEST_F(ManifestTest, KeysInOtherLettersAreTold) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"\"recordings\"", "\"Recordings\""},
+      {"\"recordings\"", "\"recording\""},
+      {"\"setting\"", "\"Setting\""},
+      {"\"setting\"", "\"SETTING\""},
+      {"\"mass_kg\"", "\"Mass_kg\""},
+      {"\"mass_kg\"", "\"mass-kg\""},
+      {"\"mass_kg\"", "\"mass kg\""},
+      {"\"bvh\"", "\"BVH\""},
+      {"\"id\"", "\"ID\""},
+      {"\"pushed_person\"", "\"pushedPerson\""},
+      {"\"subjects\"", "\"subject\""},
+  };
+  for (const auto& [from, to] : cases) {
+    std::string text = kGoodManifest;
+    text.replace(text.find(from), std::string(from).size(), to);
+    const std::string key(to + 1, std::string(to).size() - 2);
+    EXPECT_TRUE(Contains(ProblemOf(ReadManifest(WriteText("manifest.json", text))),
+                         " (here it is spelt '" + key + "')"))
+        << to;
+  }
+}
+
+TEST_F(ManifestTest, ANewerSchemaIsRefused) {
+  auto json = nlohmann::ordered_json::parse(kGoodManifest);
+  const auto problem = [&](const char* schema) {
+    json["schema"] = schema;
+    return ProblemOf(ReadManifest(WriteText("manifest.json", json.dump(1))));
+  };
+  for (const char* known : {"pushid-manifest/1", "https://example.org/ours"}) {
+    EXPECT_EQ(problem(known), "no error");
+  }
+  EXPECT_TRUE(Contains(problem("pushid-manifest/2"), "'pushid-manifest/2' is newer; update"));
+}
+
 // Reading must not take time that grows with the square of the list.
 TEST_F(ManifestTest, ManyRecordings) {
   nlohmann::json recording = nlohmann::json::parse(kGoodManifest)["recordings"][0];

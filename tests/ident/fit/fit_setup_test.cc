@@ -161,6 +161,9 @@ TEST(FitSetup, BadOptionsAreNamed) {
       {{{"friction", "anisotropic"}}, "--friction=anisotropic is for --preset=ldp"},
       {{{"seed", "-1"}}, "--seed is '-1'"},
       {{{"fix", "nu"}}, "--fix names 'nu'"},
+      {{{"fix", "mu"}, {"free", "mu"}}, "mu is both fixed (--fix) and free (--free)"},
+      {{{"free", "Kd_theta,mu=30"}, {"fix", "Kp_theta,mu=3"}}, "mu is both fixed"},
+      {{{"fix", "mu=3,mu=4"}}, "--fix names mu twice"},
       {{{"interaction", "network"}}, "a network is network:4"},
       {{{"network_prior", "0.5"}}, "--network_prior acts on networks"},
       {{{"preset_priors", "of course"}},
@@ -224,6 +227,11 @@ TEST(FitSetup, WordsOfACandidate) {
   EXPECT_EQ(words, (GivenOptions{{"preset", "ldp"}, {"fix", "mu=3"}}));
   const GivenOptions both = Merged({{"preset", "tail"}, {"seed", "2"}}, words);
   EXPECT_EQ(both, (GivenOptions{{"preset", "ldp"}, {"seed", "2"}, {"fix", "mu=3"}}));
+  // A candidate may fix what the flags free, and free what they fix.
+  const GivenOptions flags = {{"free", "mu,Kp_x"}, {"fix", "Kd_theta=70,tail_base"}};
+  EXPECT_EQ(Merged(flags, {{"fix", "mu=3"}}), (GivenOptions{{"free", "Kp_x"}, {"fix", "mu=3"}}));
+  EXPECT_EQ(Merged(flags, {{"free", "Kd_theta"}}),
+            (GivenOptions{{"free", "Kd_theta"}, {"fix", "tail_base"}}));
   for (const char* wrong : {"--model_out=x", "preset=ldp", "--preset"}) {
     EXPECT_FALSE(ParseOptionWords(wrong).ok()) << wrong;
   }

@@ -196,6 +196,22 @@ TEST(ResultJson, DamageIsNamed) {
   json["format_version"] = 99;
   EXPECT_TRUE(Contains(message(json), "newer pushid"));
   json = good;
+  json["schema"] = "pushid-model/2";
+  EXPECT_TRUE(Contains(message(json), "newer pushid"));
+  // A value that was changed by hand in one of its two places.
+  for (const char* name : {"mu", "Kp_theta", "Kd_theta", "tail_time", "tail_gain"}) {
+    json = good;
+    json["values"][name] = 1.01 * json["values"][name].get<double>();
+    EXPECT_TRUE(Contains(message(json), std::string("at 'parameters/") + name + "': " + name));
+    json = good;
+    for (Json& row : json["parameters"]) {
+      if (row["name"] == name) row["value"] = 300.0;
+    }
+    EXPECT_TRUE(Contains(message(json), std::string(name) + " is 300 here and "));
+    json["values"][name] = 300.00001;
+    EXPECT_TRUE(FittedModelFromJson(json, "some.json").ok()) << name;
+  }
+  json = good;
   json.erase("values");
   EXPECT_TRUE(Contains(message(json), "values"));
   // One of another version, with the way to convert it.

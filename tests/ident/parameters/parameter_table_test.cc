@@ -205,6 +205,11 @@ TEST(TableEdits, BadInputIsNamed) {
            Case{{"", "", "nu:3:1", "", ""}, "--prior names 'nu'"},
            Case{{"", "", "Kp_theta:-5:1", "", ""}, "lies outside its bounds"},
            Case{{"", "", "", "mu", ""}, "--set: 'mu' needs a value"},
+           Case{{"mu=3,mu=4", "", "", "", ""}, "--fix names mu twice"},
+           Case{{"mu,Kp_x,mu", "", "", "", ""}, "--fix names mu twice"},
+           Case{{"", "mu,mu=40", "", "", ""}, "--free names mu twice"},
+           Case{{"", "", "mu:3:1,mu:4:1", "", ""}, "--prior names mu twice"},
+           Case{{"", "", "", "mu=3,mu=3", ""}, "--set names mu twice"},
            Case{{"", "", "", "", "nu"}, "--pool names 'nu'"},
            Case{{"", "", "", "", "Kp_phi"}, "--pool names Kp_phi, which is fixed"},
        }) {
