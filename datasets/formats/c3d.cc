@@ -115,7 +115,7 @@ class ParameterReader {
     for (std::size_t i = 0; i < count; ++i) {
       switch (parameter->type) {
         case C3dType::kByte:
-          parameter->numbers.push_back(bytes_.Signed(at + i));
+          parameter->numbers.push_back(bytes_.Byte(at + i));
           break;
         case C3dType::kInteger:
           parameter->numbers.push_back(bytes_.Integer(at + 2 * i));
@@ -169,45 +169,21 @@ constexpr char kPlatforms[] = "FORCE_PLATFORM";
 // Counts stored in a signed integer although they reach 65535.
 double Unsigned(double value) { return value < 0 ? value + 65536.0 : value; }
 
-Error PlatformError(const C3dFile& file, int index, const std::string& problem) {
-  return {"force platform " + std::to_string(index + 1) + " " + problem, file.path};
-}
-
-Result<C3dPlatform> ReadPlatform(const C3dFile& file, int index, int stride) {
-  const auto number = [&file](const char* name, int at, double fallback) {
-    return file.parameters.Number(kPlatforms, name, at, fallback);
+// What the file says of one platform; of what it does not say, NaN, or no channels, or type 0.
+C3dPlatform ReadPlatform(const C3dParameters& parameters, int index, int stride) {
+  const auto number = [&parameters](const char* name, int at) {
+    return parameters.Number(kPlatforms, name, at, std::numeric_limits<double>::quiet_NaN());
   };
   C3dPlatform platform;
-  platform.type = file.parameters.Whole(kPlatforms, "TYPE", index, -1000, 1000, 0);
-  if (platform.type < 1 || platform.type > 4) {
-    return PlatformError(
-        file, index, "has the type " + std::to_string(platform.type) + "; types 1 to 4 are known");
+  platform.type = parameters.Whole(kPlatforms, "TYPE", index, -1000, 1000, 0);
+  for (int c = 0; c < std::min(stride, platform.type == 3 ? 8 : 6); ++c) {
+    platform.channels.push_back(
+        parameters.Whole(kPlatforms, "CHANNEL", index * stride + c, -32768, 32767, 0) - 1);
   }
-  const int needed = platform.type == 3 ? 8 : 6;
-  if (stride < needed) {
-    return PlatformError(file, index, "has fewer than " + std::to_string(needed) + " channels");
-  }
-  const int channels = static_cast<int>(file.analog.size());
-  for (int c = 0; c < needed; ++c) {
-    const double channel = number("CHANNEL", index * stride + c, 0.0);
-    if (!(channel >= 1.0 && channel <= channels)) {
-      return PlatformError(
-          file, index,
-          "names channel " + Rounded(channel) + "; there are 1 to " + std::to_string(channels));
-    }
-    platform.channels.push_back(static_cast<int>(channel) - 1);
-  }
-  for (int k = 0; k < 12; ++k) {
-    platform.corners(k % 3, k / 3) = number("CORNERS", 12 * index + k, 0.0);
-  }
-  for (int k = 0; k < 3; ++k) platform.origin[k] = number("ORIGIN", 3 * index + k, 0.0);
+  for (int k = 0; k < 12; ++k) platform.corners(k % 3, k / 3) = number("CORNERS", 12 * index + k);
+  for (int k = 0; k < 3; ++k) platform.origin[k] = number("ORIGIN", 3 * index + k);
   for (int k = 0; platform.type == 4 && k < 36; ++k) {
-    platform.calibration(k % 6, k / 6) =
-        number("CAL_MATRIX", 36 * index + k, k % 7 == 0 ? 1.0 : 0.0);
-  }
-  if (!platform.corners.allFinite() || !platform.origin.allFinite() ||
-      !platform.calibration.allFinite()) {
-    return PlatformError(file, index, "has corners, an origin or a calibration that is not finite");
+    platform.calibration(k % 6, k / 6) = number("CAL_MATRIX", 36 * index + k);
   }
   return platform;
 }
@@ -237,21 +213,22 @@ std::vector<C3dEvent> ReadC3dEvents(const C3dParameters& parameters, const C3dBy
   return events;
 }
 
-// Fills file->platforms from its parameters; its analog channels are there already. Errors: an
-// unknown type, too few channels, a channel that does not exist.
-MaybeError ReadC3dPlatforms(C3dFile* file) {
-  const int used = file->parameters.Whole(kPlatforms, "USED", 0, 0, kMostPlatforms, 0);
-  const C3dParameter* channels = file->parameters.Find(kPlatforms, "CHANNEL");
-  if (used == 0 || channels == nullptr) return std::nullopt;
-  file->platform_zero_first = file->parameters.Whole(kPlatforms, "ZERO", 0, 0, 1 << 30, 0);
-  file->platform_zero_last = file->parameters.Whole(kPlatforms, "ZERO", 1, 0, 1 << 30, 0);
-  const int stride = channels->dimensions.empty() ? 1 : channels->dimensions[0];
+// Without USED, there are as many platforms as have a TYPE or channels.
+void ReadC3dPlatforms(C3dFile* file) {
+  const C3dParameters& parameters = file->parameters;
+  const C3dParameter* channels = parameters.Find(kPlatforms, "CHANNEL");
+  const std::vector<double> types = parameters.Numbers(kPlatforms, "TYPE");
+  const int stride =
+      channels == nullptr || channels->dimensions.empty() ? 0 : channels->dimensions[0];
+  const std::size_t listed =
+      std::max(types.size(), stride == 0 ? 0 : channels->numbers.size() / stride);
+  const int used = parameters.Whole(kPlatforms, "USED", 0, 0, kMostPlatforms,
+                                    std::min<int>(kMostPlatforms, static_cast<int>(listed)));
+  file->platform_zero_first = parameters.Whole(kPlatforms, "ZERO", 0, 0, 1 << 30, 0);
+  file->platform_zero_last = parameters.Whole(kPlatforms, "ZERO", 1, 0, 1 << 30, 0);
   for (int i = 0; i < used; ++i) {
-    Result<C3dPlatform> platform = ReadPlatform(*file, i, stride);
-    if (!platform.ok()) return platform.error();
-    file->platforms.push_back(platform.value());
+    file->platforms.push_back(ReadPlatform(parameters, i, stride));
   }
-  return std::nullopt;
 }
 
 // The file's axis that the screen shows as up: "+Z" -> "+z"; empty when it is none.
@@ -349,7 +326,7 @@ class Reader {
     if (MaybeError failed = ReadFrames()) return *std::move(failed);
     if (MaybeError failed = AddC3dRotations(bytes_, &file_)) return *std::move(failed);
     file_.events = ReadC3dEvents(file_.parameters, bytes_);
-    if (MaybeError failed = ReadC3dPlatforms(&file_)) return *std::move(failed);
+    ReadC3dPlatforms(&file_);
     return std::move(file_);
   }
 
@@ -547,14 +524,17 @@ class Reader {
   }
 
   MaybeError PrepareAnalog() {
-    const C3dParameter* format = file_.parameters.Find("ANALOG", "FORMAT");
-    unsigned_ = format != nullptr && !format->texts.empty() &&
-                EqualsIgnoringCase(format->texts[0], "UNSIGNED");
     const double general = Number("ANALOG", "GEN_SCALE", 0, 1.0);
     Result<std::vector<double>> scales = PerChannel("SCALE", 1.0);
     if (!scales.ok()) return scales.error();
     Result<std::vector<double>> offsets = PerChannel("OFFSET", 0.0);
     if (!offsets.ok()) return offsets.error();
+    // Where nothing says it, an offset at the end of the signed range is the middle of the other.
+    const C3dParameter* format = file_.parameters.Find("ANALOG", "FORMAT");
+    const auto ends = [](double offset) { return offset < -16384.0; };
+    unsigned_ = format != nullptr && !format->texts.empty()
+                    ? EqualsIgnoringCase(format->texts[0], "UNSIGNED")
+                    : std::any_of(offsets.value().begin(), offsets.value().end(), ends);
     for (double& scale : scales.value()) scale *= general;
     for (double& offset : offsets.value()) offset = unsigned_ ? Unsigned(offset) : offset;
     analog_scale_ = std::move(scales.value());

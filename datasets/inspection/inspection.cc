@@ -155,6 +155,9 @@ void LookAtAnalog(const C3dFile& file, Inspection* found) {
 }
 
 void LookAtPlatforms(const C3dFile& file, Inspection* found) {
+  const std::string up = PointsOfC3d(file).value().up;
+  const Eigen::Matrix3d axes =
+      AxesRotation(up.empty() ? "z" : up, up.find('x') == std::string::npos ? "x" : "y").value();
   const LengthUnit unit = FromName<LengthUnit>(file.point_unit).value_or(LengthUnit::kMillimetre);
   for (std::size_t i = 0; i < file.platforms.size(); ++i) {
     const std::string name = "platform:" + std::to_string(i + 1);
@@ -172,11 +175,15 @@ void LookAtPlatforms(const C3dFile& file, Inspection* found) {
                                     Rounded(normal.x(), 2) + ", " + Rounded(normal.y(), 2) + ", " +
                                     Rounded(normal.z(), 2) + ")");
     AddForce(name, platform.value().rate_hz, std::move(pressing), found);
-    if (file.platforms[i].origin.z() > 0.0) {
-      found->Warn(name +
-                  " has its sensors above its surface (ORIGIN z > 0); they are taken to be "
-                  "below");
+    for (const std::string& warning : platform.value().warnings) found->Warn(warning);
+    if (file.platforms[i].origin.z() > 0.0 && file.platforms[i].type != 1) {
+      found->Warn(name + " has its sensors above its surface (ORIGIN z > 0): ORIGIN is negated");
     }
+    if (axes.row(2).dot(normal) < -0.5) {
+      found->Warn(name +
+                  " faces down: is the order of CORNERS (+x, +y), (-x, +y), (-x, -y), (+x, -y)?");
+    }
+    if (!platform.value().outside.empty()) found->Warn(platform.value().outside);
   }
 }
 

@@ -445,20 +445,6 @@ std::vector<PlateSample> SampledAt(const PlateTracks& tracks, double start, doub
   return samples;
 }
 
-// Distance of a point outside of the corners, m; in the file's axes and on the surface.
-double Beyond(const Eigen::Matrix<double, 3, 4>& corners, const Eigen::Vector3d& point) {
-  const Eigen::Vector3d centre = corners.rowwise().mean();
-  double most = 0.0;
-  for (int i = 0; i < 4; ++i) {
-    const Eigen::Vector3d edge = corners.col((i + 1) % 4) - corners.col(i);
-    Eigen::Vector3d out = 0.5 * (corners.col(i) + corners.col((i + 1) % 4)) - centre;
-    out -= out.dot(edge) / edge.squaredNorm() * edge;
-    if (out.norm() == 0.0) continue;
-    most = std::max(most, (point - corners.col(i)).dot(out.normalized()));
-  }
-  return most;
-}
-
 // Columns of one platform: fx, fy, fz, then px, py, pz or mx, my, mz.
 struct PlateColumns {
   static constexpr int kCount = 9, kMoments = 6;
@@ -546,6 +532,22 @@ Eigen::Vector3d CentreByMoment(const Eigen::Vector3d& force, const Eigen::Vector
           origin.y() + (up * force.y() + moment.x()) / force.z(), 0.0};
 }
 
+// A platform to stand on, whose surface faces up; `axes` turns the file's axes to the project's.
+Result<PlatformRecord> OnTheFloor(const C3dFile& file, int index, LengthUnit unit,
+                                  const Eigen::Matrix3d& axes) {
+  Result<PlatformRecord> platform = EvaluatePlatform(file, index, unit);
+  if (!platform.ok()) return platform;
+  const std::string name = "platform:" + std::to_string(index + 1);
+  if ((axes * platform.value().normal).z() < -0.5) {
+    return Error{name +
+                     " faces down: are up and forward right, and do CORNERS list its corners in "
+                     "the order (+x, +y), (-x, +y), (-x, -y), (+x, -y)?",
+                 file.path};
+  }
+  if (!platform.value().outside.empty()) return Error{platform.value().outside, file.path};
+  return platform;
+}
+
 Result<PlateTracks> PlatesOfC3d(const std::string& path, const ManifestPlates& plates,
                                 const Eigen::Matrix3d& axes) {
   const Result<C3dFile> read = ReadC3d(path);
@@ -561,32 +563,27 @@ Result<PlateTracks> PlatesOfC3d(const std::string& path, const ManifestPlates& p
   PlateTracks tracks;
   tracks.file = path;
   tracks.rate_hz = file.analog_rate_hz;
-  tracks.platforms = static_cast<int>(wanted.size());
+  std::optional<Error> failed;
   for (const std::string& name : wanted) {
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end()) return UnknownNameError(path, "platform", known, name);
-    const int index = static_cast<int>(found - known.begin());
-    const Result<PlatformRecord> platform = EvaluatePlatform(file, index, unit);
-    if (!platform.ok()) return platform.error();
-    const Eigen::Matrix<double, 3, 4> corners = file.platforms[index].corners * MetresPer(unit);
-    int pressed = 0, outside = 0;
-    double farthest = 0.0;
-    for (size_t i = 0; i < platform.value().force.size(); ++i) {
-      const Eigen::Vector3d& centre = platform.value().centre[i];
-      tracks.Add(i, axes * platform.value().force[i], axes * centre);
-      if (!centre.allFinite()) continue;
-      const double beyond = Beyond(corners, centre);
-      farthest = std::max(farthest, beyond);
-      ++pressed;
-      outside += beyond > kOffPlate;
+    const Result<PlatformRecord> read_platform =
+        OnTheFloor(file, static_cast<int>(found - known.begin()), unit, axes);
+    if (!read_platform.ok()) {
+      failed = read_platform.error();
+      if (!plates.plates.empty()) return *failed;
+      tracks.warnings.push_back(failed->message + "; it is left out");
+      continue;
     }
-    if (2 * outside > pressed && pressed > 0) {
-      return Error{"the centre of pressure of " + name + " is up to " + Rounded(farthest, 2) +
-                       " m outside of its corners: are the channels' units (N mm, N m), the "
-                       "corners, or a foot off the platform the reason?",
-                   path};
+    const PlatformRecord& platform = read_platform.value();
+    tracks.warnings.insert(tracks.warnings.end(), platform.warnings.begin(),
+                           platform.warnings.end());
+    for (size_t i = 0; i < platform.force.size(); ++i) {
+      tracks.Add(i, axes * platform.force[i], axes * platform.centre[i]);
     }
+    ++tracks.platforms;
   }
+  if (tracks.platforms == 0) return *failed;
   return tracks;
 }
 
@@ -654,12 +651,16 @@ MaybeError CheckPlates(const std::string& file, const Recording& recording, int 
 }
 
 MaybeError LoadPlates(const ManifestRecording& entry, const ManifestPlates& plates,
-                      double lowpass_hz, Recording* recording) {
+                      double lowpass_hz, Recording* recording, Warnings* warnings) {
   if (plates.use == PlateUse::kNone) return std::nullopt;
   RecordedPerson& person = recording->people[plates.person];
   Result<PlateTracks> read = ReadPlates(entry, plates, person);
   if (!read.ok()) return read.error();
   PlateTracks& tracks = read.value();
+  for (size_t i = 0; warnings != nullptr && i < tracks.warnings.size(); ++i) {
+    warnings->emplace_back("recording " + Quoted(entry.id) + ": " + tracks.warnings[i], entry.id,
+                           tracks.warnings[i]);
+  }
   const double fps = recording->fps, seconds = (recording->num_frames() - 1) / fps;
   const Result<double> start = PlatesStart(tracks, plates, person, fps, seconds);
   if (!start.ok()) return start.error();

@@ -82,20 +82,19 @@ MaybeError CheckPlates(const std::string& file, const Recording& recording, int 
 
 // Into the person's `plates`. Errors: those of the files, no such platform or column, a record that
 // ends early, a mean vertical force that is not the weight, a centre of pressure off the platform
-// or far from the feet.
+// or far from the feet. Warnings: those of the tracks.
 MaybeError LoadPlates(const ManifestRecording& entry, const ManifestPlates& plates,
-                      double lowpass_hz, Recording* recording);
+                      double lowpass_hz, Recording* recording, Warnings* warnings = nullptr);
 
 // Force platforms as their files have them: read, turned to the project's axes, added up.
-
-inline constexpr double kOffPlate = 0.02;  // m beyond the edge, of most frames: a wrong one
 
 // Evenly sampled, in the project's axes: force, and the moments [F_z p_x, F_z p_y, F_z].
 struct PlateTracks {
   std::string file;
   double rate_hz = 0.0, first_s = 0.0;
   int last_line = 0;
-  int platforms = 0;  // that were added up
+  int platforms = 0;                    // that were added up
+  std::vector<std::string> warnings{};  // what is unusual about them, and which are left out
   std::vector<Eigen::Vector3d> force, moment;
 
   void Add(size_t at, const Eigen::Vector3d& on_person, const Eigen::Vector3d& centre) {
@@ -111,8 +110,9 @@ struct PlateTracks {
 };
 
 // The platforms of a manifest's entry, from the file that it names or from the motion's; a motion's
-// file has the axes of its person. Errors: those of the files, no such platform or column, a centre
-// of pressure off the platform.
+// file has the axes of its person. Errors: those of the files, no such platform or column, a
+// platform that is named and cannot be evaluated, or none that can. Platforms of a C3D file that
+// are not named and cannot be are left out.
 Result<PlateTracks> ReadPlates(const ManifestRecording& entry, const ManifestPlates& plates,
                                const RecordedPerson& person);
 

@@ -3,10 +3,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
 
 #include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
@@ -23,116 +27,266 @@ namespace {
 using Eigen::Vector3d;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-// Metres in the length of a moment's unit ("Nmm", "N.m", "N*cm"), else in `unit`.
-double MomentLength(const std::string& text, LengthUnit unit) {
+constexpr char kPlatform[] = "platform:";
+
+// Newtons, or newton metres, in one of a file's unit ("kN", "N.mm"); nullopt: it is no such unit.
+std::optional<double> NewtonsIn(const std::string& unit, bool moment = false) {
+  constexpr std::pair<std::string_view, double> kForces[] = {{"N", 1.0},       {"Newton", 1.0},
+                                                             {"Newtons", 1.0}, {"kN", 1e3},
+                                                             {"lbf", 4.44822}, {"kgf", 9.80665}};
   std::string letters;
-  for (char c : text) {
-    if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')) letters += c;
+  std::copy_if(unit.begin(), unit.end(), std::back_inserter(letters),
+               [](unsigned char c) { return std::isalpha(c) != 0; });
+  for (const auto& [name, newtons] : kForces) {
+    if (!EqualsIgnoringCase(letters.substr(0, name.size()), name)) continue;
+    const std::string rest = letters.substr(name.size());
+    const std::optional<LengthUnit> length = FromName<LengthUnit>(rest);
+    if (moment && length) return newtons * MetresPer(*length);
+    if (!moment && rest.empty()) return newtons;
   }
-  for (const LengthUnitRow& row : kLengthUnits) {
-    if (EqualsIgnoringCase(letters, std::string("N") + row.name)) return MetresPer(row.value);
-  }
-  return MetresPer(unit);
+  return std::nullopt;
 }
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Of platforms, m: beyond them a length is in another unit than the file says.
+constexpr double kLeastSide = 0.005, kMostSide = 20.0, kLeastOrigin = 5e-4, kMostOrigin = 2.0;
+constexpr double kLeastLever = 1e-3;   // m, from the middle to where people press, at the median
+constexpr double kLoadedZero = 200.0;  // N; less may be an offset
 
 class Platform {
  public:
-  Platform(const C3dFile& file, const C3dPlatform& platform, LengthUnit unit)
-      : file_(file), platform_(platform), metres_(MetresPer(unit)) {
-    origin_ = metres_ * platform.origin;
-    if (origin_.z() > 0.0) origin_.z() = -origin_.z();
-    moment_metres_ = MomentLength(file.analog[platform.channels[5]].unit, unit);
-    Baseline();
+  Platform(const C3dFile& file, int index, LengthUnit unit)
+      : file_(file),
+        platform_(file.platforms[index]),
+        name_(kPlatform + std::to_string(index + 1)),
+        unit_(unit),
+        num_channels_(platform_.type == 3 ? 8 : 6) {}
+
+  Result<PlatformRecord> Record() {
+    std::string problem = Problem();
+    if (problem.empty()) problem = Place();
+    if (!problem.empty()) return Error{name_ + " " + problem, file_.path};
+    const auto says = [this](const char* name) {
+      return file_.parameters.Find("FORCE_PLATFORM", name) != nullptr;
+    };
+    if (says("TYPE") && !says("USED")) Warn("is counted by TYPE: USED is missing");
+    if (says("FPCOPPOLY")) Warn("has FPCOPPOLY, a correction of centres, which is not applied");
+    ReadOrigin();
+    ReadUnits();
+    ReadZero();
+    record_.rate_hz = file_.analog_rate_hz;
+    record_.normal = -axes_.col(2);
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    Vector3d impulse = Vector3d::Zero();
+    int pressed = 0, outside = 0;
+    double farthest = 0.0;
+    for (std::size_t i = 0; i < num_samples(); ++i) {
+      Vector3d force, centre;  // in the platform's axes; the centre on its surface
+      double free_moment = 0.0;
+      Sample(i, &force, &centre, &free_moment);
+      if (!force.allFinite()) {
+        return Error{name_ + " is not finite at sample " + std::to_string(i), file_.path};
+      }
+      const bool presses = std::fabs(force.z()) >= kPressed && centre.allFinite();
+      record_.force.push_back(axes_ * force);
+      record_.centre.push_back(presses ? Vector3d(centre_ + axes_ * centre)
+                                       : Vector3d::Constant(kNaN));
+      // About z, which points inwards.
+      record_.free_moment.push_back(presses ? -free_moment : 0.0);
+      impulse += record_.force.back();
+      if (!presses) continue;
+      ++pressed;
+      const double beyond = (centre.head<2>().cwiseAbs() - half_).maxCoeff();
+      outside += beyond > kOffPlate;
+      farthest = std::max(farthest, beyond);
+    }
+    if (2 * outside > pressed) {
+      record_.outside = "the centre of pressure of " + name_ + " is up to " + Rounded(farthest, 2) +
+                        " m outside of its corners: are the channels' units (" +
+                        ListOfNames({units_.begin(), units_.end()}) +
+                        "), the corners, or a foot off the platform the reason?";
+    }
+    if (impulse.dot(record_.normal) < 0.0) {
+      for (Vector3d& force : record_.force) force = -force;
+      for (double& moment : record_.free_moment) moment = -moment;
+    }
+    return std::move(record_);
   }
 
-  // Axes and centre; false when the corners span nothing.
-  bool Place() {
-    const auto corner = [this](int i) -> Vector3d { return metres_ * platform_.corners.col(i); };
-    centre_ = 0.25 * (corner(0) + corner(1) + corner(2) + corner(3));
-    const Vector3d x = corner(0) - corner(1), y = corner(0) - corner(3);
+ private:
+  std::size_t num_samples() const { return file_.analog[platform_.channels[0]].samples.size(); }
+  void Warn(const std::string& what) { record_.warnings.push_back(name_ + " " + what); }
+
+  // Why it cannot be evaluated; empty: it can.
+  std::string Problem() const {
+    const int type = platform_.type, channels = static_cast<int>(file_.analog.size());
+    if (type < 1 || type > 4) {
+      return (type == 0 ? "has no TYPE" : "has the TYPE " + std::to_string(type)) +
+             "; types 1 to 4 are known";
+    }
+    if (static_cast<int>(platform_.channels.size()) < num_channels_) {
+      return "has " + std::to_string(platform_.channels.size()) + " of " +
+             std::to_string(num_channels_) + " channels (CHANNEL)";
+    }
+    for (int c = 0; c < num_channels_; ++c) {
+      const int channel = platform_.channels[c];
+      if (channel >= 0 && channel < channels) continue;
+      return "names channel " + std::to_string(channel + 1) + " (CHANNEL); the file has " +
+             (channels == 0 ? "no analog channels" : "1 to " + std::to_string(channels));
+    }
+    const Vector3d& origin = platform_.origin;
+    if (!platform_.corners.allFinite()) return "has no CORNERS";
+    if (type == 3 && !(origin.allFinite() && origin.x() != 0.0 && origin.y() != 0.0)) {
+      return "has no distances of its sensors, a and b (ORIGIN)";
+    }
+    return type == 4 && !platform_.calibration.allFinite() ? "has no CAL_MATRIX" : "";
+  }
+
+  // Axes and centre. Returns what is wrong with the corners.
+  std::string Place() {
+    const Eigen::Matrix<double, 3, 4> corners = MetresPer(unit_) * platform_.corners;
+    centre_ = corners.rowwise().mean();
+    const Vector3d x = corners.col(0) - corners.col(1), y = corners.col(0) - corners.col(3);
     const Vector3d z = x.cross(y);
-    if (!(x.norm() > 1e-6 && y.norm() > 1e-6 && z.norm() > 1e-3 * x.norm() * y.norm())) {
-      return false;
+    half_ = {0.5 * x.norm(), 0.5 * y.norm()};
+    if (!(z.norm() > 1e-3 * x.norm() * y.norm())) return "has CORNERS that span no surface";
+    if (2.0 * half_.minCoeff() < kLeastSide || 2.0 * half_.maxCoeff() > kMostSide) {
+      return "has CORNERS of " + Rounded(x.norm(), 3) + " by " + Rounded(y.norm(), 3) +
+             " m: are they in POINT:UNITS, " + Quoted(file_.point_unit) + "?";
     }
     axes_.col(0) = x.normalized();
     axes_.col(2) = z.normalized();
     axes_.col(1) = axes_.col(2).cross(axes_.col(0));
-    return true;
+    return "";
   }
 
-  PlatformRecord Record() const {
-    PlatformRecord record;
-    record.rate_hz = file_.analog_rate_hz;
-    record.normal = -axes_.col(2);
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    const std::size_t samples = file_.analog[platform_.channels[0]].samples.size();
-    Vector3d impulse = Vector3d::Zero();
-    for (std::size_t i = 0; i < samples; ++i) {
-      Vector3d force, centre;  // in the platform's axes; the centre on its surface
-      double free_moment = 0.0;
-      Sample(i, &force, &centre, &free_moment);
-      const bool pressed = std::fabs(force.z()) >= kPressed && centre.allFinite();
-      record.force.push_back(axes_ * force);
-      record.centre.push_back(pressed ? Vector3d(centre_ + axes_ * centre)
-                                      : Vector3d::Constant(kNaN));
-      // About z, which points inwards.
-      record.free_moment.push_back(pressed ? -free_moment : 0.0);
-      impulse += record.force.back();
+  void ReadOrigin() {
+    origin_.setZero();
+    if (platform_.type == 1) return;
+    if (!platform_.origin.allFinite()) {
+      return Warn("has no ORIGIN: centres are off by its sensors' depth times shear over load");
     }
-    if (impulse.dot(record.normal) < 0.0) {
-      for (Vector3d& force : record.force) force = -force;
-      for (double& moment : record.free_moment) moment = -moment;
+    origin_ = MetresPer(unit_) * platform_.origin;
+    const double size = origin_.norm();
+    if (size > 0.0 && (size < kLeastOrigin || size > kMostOrigin)) {
+      Warn("has an ORIGIN of " + Rounded(size, 3) + " m: is it in POINT:UNITS, " +
+           Quoted(file_.point_unit) + "?");
     }
-    return record;
+    if (origin_.z() > 0.0) origin_ = -origin_;
+    if (platform_.type != 3) return;
+    places_ = origin_.head<2>().cwiseAbs();
+    origin_.head<2>().setZero();
   }
 
- private:
-  double Raw(int channel, std::size_t sample) const {
-    return file_.analog[platform_.channels[channel]].samples[sample] - baseline_[channel];
+  // SI units in one of each channel, after the calibration.
+  void ReadUnits() {
+    std::set<std::string> unknown;
+    std::vector<int> levers;
+    for (int c = 0; c < num_channels_; ++c) {
+      const std::string& text = file_.analog[platform_.channels[c]].unit;
+      const bool force = platform_.type == 3 || c < 3, length = platform_.type == 1 && c < 5;
+      const std::optional<double> si =
+          force && platform_.type == 4 ? 1.0
+                                       : NewtonsIn(length && !force ? "N" + text : text, !force);
+      scale_[c] = si.value_or(1.0);
+      if (!si && !force) levers.push_back(c);
+      units_.insert(text.empty() ? "none" : text);
+      if (!si && !text.empty() && platform_.type != 4) unknown.insert(text);
+    }
+    const LengthUnit unit = levers.empty() ? unit_ : UnitOfLevers();
+    for (int c : levers) scale_[c] = MetresPer(unit);
+    if (unknown.empty() && unit == unit_) return;
+    Warn("has channels " +
+         (unknown.empty() ? "without a unit"
+                          : "in " + ListOfNames({unknown.begin(), unknown.end()})) +
+         " (ANALOG:UNITS), which are read as N" + (levers.empty() ? "" : " and N " + NameOf(unit)) +
+         (unit == unit_ ? "" : ": N " + NameOf(unit_) + " gives no centre of pressure on it"));
   }
 
-  // The mean of the frames without load, where the file names some.
-  void Baseline() {
-    baseline_.assign(platform_.channels.size(), 0.0);
+  // The file's unit of length, unless people would stand off the platform or always at its middle.
+  LengthUnit UnitOfLevers() const {
+    std::vector<double> levers;
+    for (std::size_t i = 0; i < num_samples(); ++i) {
+      const Vector6 read = Read(i);
+      const double lever =
+          read.segment<2>(3).norm() / (platform_.type == 1 ? 1.0 : std::fabs(read[2]));
+      if (std::fabs(read[2]) >= kPressed && std::isfinite(lever)) levers.push_back(lever);
+    }
+    const double lever = levers.empty() ? 0.0 : Median(std::move(levers));
+    for (LengthUnit unit : {unit_, LengthUnit::kMillimetre, LengthUnit::kMetre}) {
+      const double length = lever * MetresPer(unit);
+      if (length >= kLeastLever && length <= half_.norm()) return unit;
+    }
+    return unit_;
+  }
+
+  // The mean of the frames without load is taken off, where the file names some.
+  void ReadZero() {
     const int first = file_.platform_zero_first, last = file_.platform_zero_last;
-    if (first < 1 || last < first || last > file_.num_frames()) return;
-    const int per_frame = file_.samples_per_frame();
-    for (std::size_t c = 0; c < baseline_.size(); ++c) {
-      const std::vector<double>& samples = file_.analog[platform_.channels[c]].samples;
-      double sum = 0.0;
-      for (int i = (first - 1) * per_frame; i < last * per_frame; ++i) sum += samples[i];
-      baseline_[c] = sum / ((last - first + 1) * per_frame);
+    if (last < 1) return;
+    const std::string zero =
+        "has the ZERO frames " + std::to_string(first) + " to " + std::to_string(last);
+    if (first < 1 || last < first || last > file_.num_frames()) {
+      return Warn(zero + ", which the file, 1 to " + std::to_string(file_.num_frames()) +
+                  ", does not have: nothing is taken off, and an offset moves its centre");
     }
+    const std::size_t per_frame = file_.samples_per_frame();
+    Eigen::Matrix<double, 8, 1> baseline = Eigen::Matrix<double, 8, 1>::Zero();
+    const double share = 1.0 / ((last - first + 1.0) * static_cast<double>(per_frame));
+    double load = 0.0, least = 0.0, most = 0.0;  // N, vertical; shares of it more than it
+    for (std::size_t i = (first - 1) * per_frame; i < last * per_frame; ++i) {
+      baseline += share * Raw(i);
+      load += share * Read(i)[2];
+    }
+    for (std::size_t i = 0; i < num_samples(); ++i) {
+      const double part = (Read(i)[2] - load) / load;
+      least = std::min(least, part);
+      most = std::max(most, part);
+    }
+    // Whoever stood there stays, or leaves; an offset stays while somebody comes.
+    const bool stays = std::max(-least, most) < 0.5, leaves = std::fabs(least + 1.0) < 0.2;
+    if (std::fabs(load) > kLoadedZero && (stays || leaves)) {
+      return Warn(zero + ", in which it is loaded with " + Rounded(std::fabs(load), 3) +
+                  " N: nothing is taken off");
+    }
+    baseline_ = baseline;
   }
 
-  // Force and moment at the centre of the surface, platform axes (types 2 to 4).
-  void Wrench(std::size_t i, Vector3d* force, Vector3d* moment) const {
-    if (platform_.type == 3) {
-      const double fx12 = Raw(0, i), fx34 = Raw(1, i), fy14 = Raw(2, i), fy23 = Raw(3, i);
-      const double fz1 = Raw(4, i), fz2 = Raw(5, i), fz3 = Raw(6, i), fz4 = Raw(7, i);
-      const double a = metres_ * platform_.origin.x(), b = metres_ * platform_.origin.y();
-      *force = {fx12 + fx34, fy14 + fy23, fz1 + fz2 + fz3 + fz4};
-      const Vector3d at_sensors = {b * (fz1 + fz2 - fz3 - fz4), a * (-fz1 + fz2 + fz3 - fz4),
-                                   b * (-fx12 + fx34) + a * (fy14 - fy23)};
-      *moment = at_sensors + force->cross(Vector3d(0.0, 0.0, origin_.z()));
-      return;
+  Eigen::Matrix<double, 8, 1> Raw(std::size_t i) const {
+    Eigen::Matrix<double, 8, 1> raw = -baseline_;
+    for (int c = 0; c < num_channels_; ++c)
+      raw[c] += file_.analog[platform_.channels[c]].samples[i];
+    return raw;
+  }
+
+  // Force and moment at the sensors; of type 1 centre and free moment behind the force.
+  Vector6 Read(std::size_t i) const {
+    const Eigen::Matrix<double, 8, 1> raw = Raw(i);
+    if (platform_.type != 3) {
+      return scale_.head<6>().cwiseProduct(platform_.calibration * raw.head<6>());
     }
-    Vector6 wrench;
-    for (int c = 0; c < 6; ++c) wrench[c] = Raw(c, i);
-    if (platform_.type == 4) wrench = platform_.calibration * wrench;
-    *force = wrench.head<3>();
-    *moment = moment_metres_ * wrench.tail<3>() + force->cross(origin_);
+    const Eigen::Matrix<double, 8, 1> f = scale_.cwiseProduct(raw);
+    const double a = places_.x(), b = places_.y();
+    Vector6 read;
+    read << f[0] + f[1], f[2] + f[3], f.tail<4>().sum(), b * (f[4] + f[5] - f[6] - f[7]),
+        a * (-f[4] + f[5] + f[6] - f[7]), b * (-f[0] + f[1]) + a * (f[2] - f[3]);
+    return read;
   }
 
   void Sample(std::size_t i, Vector3d* force, Vector3d* centre, double* free_moment) const {
+    const Vector6 read = Read(i);
+    *force = read.head<3>();
     if (platform_.type == 1) {
-      *force = {Raw(0, i), Raw(1, i), Raw(2, i)};
-      *centre = {metres_ * Raw(3, i), metres_ * Raw(4, i), 0.0};
-      *free_moment = moment_metres_ * Raw(5, i);
+      *centre = {read[3], read[4], 0.0};
+      *free_moment = read[5];
       return;
     }
-    Vector3d moment;
-    Wrench(i, force, &moment);
+    const Vector3d moment = read.tail<3>() + force->cross(origin_);
     const double x = -moment.y() / force->z(), y = moment.x() / force->z();
     *centre = {x, y, 0.0};
     *free_moment = moment.z() - x * force->y() + y * force->x();
@@ -140,33 +294,29 @@ class Platform {
 
   const C3dFile& file_;
   const C3dPlatform& platform_;
-  double metres_, moment_metres_ = 1.0;
+  const std::string name_;
+  const LengthUnit unit_;
+  const int num_channels_;
+  PlatformRecord record_;
+  std::set<std::string> units_;  // as the file has them
   Vector3d origin_, centre_;
+  Eigen::Vector2d half_, places_;  // of the sides; of the sensors of type 3, a and b
   Eigen::Matrix3d axes_;
-  std::vector<double> baseline_;  // per channel
+  Eigen::Matrix<double, 8, 1> baseline_ = Eigen::Matrix<double, 8, 1>::Zero();
+  Eigen::Matrix<double, 8, 1> scale_ = Eigen::Matrix<double, 8, 1>::Ones();
 };
 
 }  // namespace
 
 Result<PlatformRecord> EvaluatePlatform(const C3dFile& file, int platform, LengthUnit unit) {
   const int count = static_cast<int>(file.platforms.size());
-  if (platform < 0 || platform >= count) {
-    return Error{"there is no force platform " + std::to_string(platform + 1) + "; the file has " +
-                     std::to_string(count),
-                 file.path};
-  }
-  Platform evaluated(file, file.platforms[platform], unit);
-  if (!evaluated.Place()) {
-    return Error{
-        "the corners of force platform " + std::to_string(platform + 1) + " span no surface",
-        file.path};
-  }
-  return evaluated.Record();
+  if (platform >= 0 && platform < count) return Platform(file, platform, unit).Record();
+  return Error{"there is no force platform " + std::to_string(platform + 1) + "; the file has " +
+                   std::to_string(count),
+               file.path};
 }
 
 namespace {
-
-constexpr char kPlatform[] = "platform:";
 
 std::vector<std::string> ChannelNames(const C3dFile& file) {
   std::vector<std::string> names;
@@ -241,7 +391,8 @@ std::optional<double> HeightOfPressure(const PlatformRecord& platform, const Eig
   return weight > 0.0 ? std::optional<double>(sum / weight) : std::nullopt;
 }
 
-Result<SensorRecord> FromC3d(const SensorChoice& choice, const Eigen::Vector3d& up) {
+Result<SensorRecord> FromC3d(const SensorChoice& choice, const Eigen::Vector3d& up,
+                             std::vector<std::string>* warnings) {
   const Result<C3dFile> read = ReadC3d(choice.file);
   if (!read.ok()) return read.error();
   const C3dFile& file = read.value();
@@ -262,6 +413,8 @@ Result<SensorRecord> FromC3d(const SensorChoice& choice, const Eigen::Vector3d& 
     const Result<PlatformRecord> platform = EvaluatePlatform(
         file, static_cast<int>(number) - 1, unit.value_or(LengthUnit::kMillimetre));
     if (!platform.ok()) return platform.error();
+    const std::vector<std::string>& told = platform.value().warnings;
+    if (warnings != nullptr) warnings->insert(warnings->end(), told.begin(), told.end());
     record.is_vector = true;
     record.force = platform.value().force;
     record.height_m = HeightOfPressure(platform.value(), up);
@@ -270,7 +423,16 @@ Result<SensorRecord> FromC3d(const SensorChoice& choice, const Eigen::Vector3d& 
     if (channel < 0) {
       return UnknownNameError(choice.file, "analog channel", ChannelNames(file), choice.column);
     }
-    for (double sample : file.analog[channel].samples) record.force.push_back({sample, 0.0, 0.0});
+    const std::string& unit = file.analog[channel].unit;
+    const std::optional<double> newtons = choice.gain || unit.empty() ? 1.0 : NewtonsIn(unit);
+    if (!newtons) {
+      return Error{choice.column + " is in " + Quoted(unit) +
+                       " (ANALOG:UNITS): give its \"gain\", in N per unit, in a list of sensors",
+                   choice.file};
+    }
+    for (double sample : file.analog[channel].samples) {
+      record.force.push_back({*newtons * sample, 0.0, 0.0});
+    }
   }
   for (std::size_t i = 0; i < record.force.size(); ++i) {
     record.time_s.push_back(static_cast<double>(i) / file.analog_rate_hz);
@@ -303,12 +465,6 @@ constexpr double kLoad = 0.3;         // of the peak
 constexpr double kSurely = 4.0;       // standard errors of the reading
 constexpr double kWorthwhile = 1e-3;  // of the peak
 constexpr int kFewestAtRest = 5, kSustained = 3;
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // The median of the first samples, and the standard deviation about it of their largest component.
 Eigen::Vector3d ReadingOf(const SensorRecord& record, int samples, double* noise) {
@@ -351,18 +507,19 @@ void FillFromMotion(const RecordedPerson& person, SensorChoice* choice) {
   choice->forward = person.file_forward;
 }
 
-Result<SensorRecord> ReadSensor(const SensorChoice& choice) {
+Result<SensorRecord> ReadSensor(const SensorChoice& choice, std::vector<std::string>* warnings) {
   const Result<Eigen::Matrix3d> rotation = AxesRotation(
       choice.up.empty() ? "z" : choice.up, choice.forward.empty() ? "x" : choice.forward);
   if (!rotation.ok()) return rotation.error();
   const MotionFormat format = MotionFormatOfFile(choice.file).value_or(MotionFormat::kCsv);
   const bool several = format == MotionFormat::kC3d || format == MotionFormat::kStorage;
   if (choice.column.empty() && several) return WhichColumn(choice, format);
-  if (!std::isfinite(choice.gain) || choice.gain == 0.0) {
+  const double gain = choice.gain.value_or(1.0);
+  if (!std::isfinite(gain) || gain == 0.0) {
     return Error{"the gain of a sensor must be a number of N per unit other than 0"};
   }
   Result<SensorRecord> record = format == MotionFormat::kC3d
-                                    ? FromC3d(choice, rotation.value().row(2).transpose())
+                                    ? FromC3d(choice, rotation.value().row(2).transpose(), warnings)
                                 : choice.column.empty() ? ReadSensorCsv(choice.file)
                                                         : FromTable(choice);
   if (!record.ok()) return record;
@@ -371,7 +528,7 @@ Result<SensorRecord> ReadSensor(const SensorChoice& choice) {
     return Error{"an offset can only be subtracted from a sensor with a single axis", choice.file};
   }
   for (Eigen::Vector3d& force : record.value().force) {
-    force *= choice.gain;
+    force *= gain;
     force.x() -= choice.zero_n.value_or(0.0);
     if (record.value().is_vector) force = rotation.value() * force;
   }
@@ -393,7 +550,7 @@ Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path) {
     SensorChoice sensor;
     sensor.file = ResolvePath(path, fields.Text("file", "the name of a file with forces"));
     sensor.column = fields.OptionalText("column", "");
-    sensor.gain = fields.OptionalNumber("gain", "the N per unit", 1.0);
+    if (fields.Has("gain")) sensor.gain = fields.Number("gain", "the N per unit");
     sensor.up = fields.OptionalText("up", "");
     sensor.forward = fields.OptionalText("forward", "");
     ReadDirection(&fields, &sensor);

@@ -22,7 +22,9 @@ struct SensorChoice {
   // common part of three (ground_force_v for ground_force_vx, ..._vy, ..._vz); an analog channel;
   // or platform:1, counted from 1.
   std::string column;
-  double gain = 1.0;  // N per unit of the column; negative where it counts the other way
+  // N per unit of the column; negative where it counts the other way. Unset: 1, or the N in the
+  // unit that a C3D file gives its channel.
+  std::optional<double> gain;
   // Reading of a sensor of one number at rest, N; unset: what it reads before the pull.
   std::optional<double> zero_n;
   // Axes of the file that point up and forward, for forces that are vectors; empty: z and x.
@@ -40,8 +42,10 @@ struct SensorChoice {
 void FillFromMotion(const RecordedPerson& person, SensorChoice* choice);
 
 // Errors besides those of the files' readers: no such column, channel or platform (some that exist
-// are listed), missing values, uneven times.
-Result<SensorRecord> ReadSensor(const SensorChoice& choice);
+// are listed), missing values, uneven times, a channel of a C3D file whose unit is no force.
+// warnings: those of a platform are appended.
+Result<SensorRecord> ReadSensor(const SensorChoice& choice,
+                                std::vector<std::string>* warnings = nullptr);
 
 // Subtracts what a sensor reads before the pull: the median of its samples there. Sets `subtracted`
 // (zero where the reading is as likely noise about zero) and `noise`. Nothing where the record
@@ -65,9 +69,9 @@ Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path);
 //   4  as 2 after [F, M] = CAL_MATRIX channels
 // In the platform's axes, at the centre of its surface: M_s = M + F x ORIGIN (ORIGIN: from the
 // sensors' origin to the surface; type 3: [0, 0, az0]; z points into the platform, so ORIGIN_z is
-// negative, and a positive one is taken as negative). Centre of pressure (-My/Fz, Mx/Fz), free
-// moment Tz = Mz - x Fy + y Fx. Axes from the corners 1 (+x, +y), 2 (-x, +y), 3 (-x, -y), 4 (+x,
-// -y).
+// negative; ORIGIN with a positive one is from the surface to the sensors, and negated as a whole).
+// Centre of pressure (-My/Fz, Mx/Fz), free moment Tz = Mz - x Fy + y Fx. Axes from the corners 1
+// (+x, +y), 2 (-x, +y), 3 (-x, -y), 4 (+x, -y). Of type 3, a and b are taken without their sign.
 struct PlatformRecord {
   double rate_hz = 0.0;
   // Per sample, in the file's axes. The force on the person: programs store either it or its
@@ -78,14 +82,20 @@ struct PlatformRecord {
   std::vector<Eigen::Vector3d> centre;                // m
   std::vector<double> free_moment;                    // N m on the person, about the outward normal
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // out of the surface
+  std::string outside;  // a sentence where most centres lie beyond the corners by kOffPlate
+  std::vector<std::string> warnings;  // "platform:1 has no ORIGIN; ..."
 };
 
 // Less than this many newtons say nothing about where the platform is pressed.
 inline constexpr double kPressed = 10.0;
 
-// platform: from 0. unit: of the file's lengths; moments count in N mm where the channel's unit
-// does not say (Nm, Nmm) and the lengths are mm. Errors: no such platform, corners that span no
-// surface.
+inline constexpr double kOffPlate = 0.02;  // m beyond the edge, of most frames: a wrong one
+
+// platform: from 0. unit: of the file's lengths. Forces and moments are in the units of their
+// channels (N, kN, lbf, kgf; times mm, cm, m); moments without a unit in N times the file's unit of
+// length, or in N mm or N m where only that puts the centre on the platform (a warning). Errors: no
+// such platform; one whose TYPE, CHANNEL, CORNERS, CAL_MATRIX (type 4) or ORIGIN (type 3) is
+// missing or none; corners that span no surface; samples that are not finite.
 Result<PlatformRecord> EvaluatePlatform(const C3dFile& file, int platform, LengthUnit unit);
 
 }  // namespace pushid

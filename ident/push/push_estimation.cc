@@ -310,6 +310,7 @@ std::string CutShort(const SensorRecord& record) {
 struct ReadSensors {
   std::vector<SensorChoice> choices;  // with what the motion's file says of them
   std::vector<SensorRecord> records;
+  std::vector<std::string> warnings;
   std::string how;
 };
 
@@ -332,7 +333,7 @@ Result<ReadSensors> ReadAll(const SensorSetup& setup, const Recording& recorded,
   for (SensorChoice sensor : setup.sensors) {
     const bool said = sensor.start_s.has_value();
     for (const RecordedPerson& one : recorded.people) FillFromMotion(one, &sensor);
-    Result<SensorRecord> record = ReadSensor(sensor);
+    Result<SensorRecord> record = ReadSensor(sensor, &read.warnings);
     if (!record.ok()) return record.error();
     const bool together = sensor.start_s.has_value();
     if (!together) {
@@ -407,6 +408,7 @@ Result<SensorPush> PushFromSensors(const SensorSetup& setup, const Recording& re
   if (!read.ok()) return read.error();
   SensorPush result;
   result.how = read.value().how;
+  result.warnings = read.value().warnings;
   const Result<SensorOffset> offset = Offset(setup, read.value(), recording, person, &result);
   if (!offset.ok()) return offset.error();
   SensorPushOptions options;

@@ -40,6 +40,10 @@ class HandmadeC3d {
     for (int value : values) Word(value, &data);
     Parameter(name, C3dType::kInteger, dimensions, data);
   }
+  void Counts(const std::string& name, const std::vector<int>& values) {  // bytes
+    Parameter(name, C3dType::kByte, {static_cast<int>(values.size())},
+              std::string(values.begin(), values.end()));
+  }
   void Reals(const std::string& name, const std::vector<double>& values,
              const std::vector<int>& dimensions) {
     std::string data;
@@ -143,6 +147,15 @@ inline HandmadeC3d UnsignedC3d(C3dProcessor processor = C3dProcessor::kIntel) {
   file.Reals("GEN_SCALE", {4.0}, {});
   file.Reals("SCALE", {0.5}, {1});
   file.Integers("OFFSET", {-32768}, {1});
+  return file;
+}
+
+// The same without a word of the format: an offset at the end of the signed range says it.
+inline HandmadeC3d UnsaidUnsignedC3d(C3dProcessor processor = C3dProcessor::kIntel) {
+  HandmadeC3d file(processor);
+  file.raw = {32668, 32868};
+  file.Group("ANALOG");
+  file.Integers("OFFSET", {-32768, -32768}, {2});
   return file;
 }
 

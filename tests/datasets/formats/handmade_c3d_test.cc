@@ -47,6 +47,7 @@ TEST_F(HandmadeC3dTest, SamplesAreRawLessOffsetTimesBothScales) {
   };
   const Case cases[] = {
       {"unsigned", &UnsignedC3d, {200.0}},
+      {"unsigned, unsaid", &UnsaidUnsignedC3d, {-100.0, 100.0}},
       {"offset and general scale", &OffsetC3d, {300.0, -900.0}},
       {"300 channels", &ManyChannelsC3d, std::vector<double>(300, 100.0)},
   };

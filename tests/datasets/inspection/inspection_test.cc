@@ -202,6 +202,16 @@ TEST_F(InspectionTest, C3d) {
                            "platform:1 type", "peak 700 N", "61.25 s Foot Off (Right)"}) {
     EXPECT_TRUE(Contains(said, part));
   }
+  C3dFile odd = SampleC3d();
+  odd.platforms.resize(3, odd.platforms[0]);
+  odd.platforms[0].type = 6;
+  odd.platforms[1].corners.rowwise().reverseInPlace();
+  odd.platforms[2].origin.z() = 40.0;
+  ASSERT_FALSE(WriteC3d(Path("odd.c3d"), odd));
+  for (const char* part : {"warning: platform:1 has the TYPE 6", "warning: platform:2 faces down",
+                           "warning: platform:3 has its sensors above its surface"}) {
+    EXPECT_TRUE(Contains(Of("odd.c3d"), part));
+  }
   const std::string text = ReadText(Path("a.c3d"));
   WriteText("cut.c3d", text.substr(0, text.size() - 1024));
   EXPECT_TRUE(Contains(Of("cut.c3d"), "of 10 frames: it is truncated"));

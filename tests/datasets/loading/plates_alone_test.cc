@@ -11,6 +11,8 @@
 #include "datasets/loading/load_recordings.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "datasets/synthetic/synthetic_recordings.h"
+#include "tests/datasets/c3d_samples.h"
+#include "tests/datasets/c3d_writer.h"
 #include "tests/test_support.h"
 
 namespace pushid {
@@ -53,8 +55,10 @@ class PlatesAlone : public TempDirTest {
     WriteText("manifest.json", manifest.dump(1));
     LoadOptions options;
     options.plates_alone = allowed;
-    return LoadRecordings(Path("manifest.json"), options);
+    warnings_.clear();
+    return LoadRecordings(Path("manifest.json"), options, &warnings_);
   }
+  Warnings warnings_;
   std::string Problem(const std::function<void(Json*)>& change, bool allowed = true) {
     return ProblemOf(Load(change, allowed));
   }
@@ -75,6 +79,34 @@ TEST_F(PlatesAlone, StandForAsLongAsTheyMeasuredAndHaveNoWeight) {
     EXPECT_LT((plates[t].force - At(t).force).norm(), 0.05) << t;
     EXPECT_LT((plates[t].centre.head<2>() - At(t).centre).norm(), 1e-4) << t;
   }
+}
+
+// A platform that cannot be evaluated is left out, unless it is named; one that faces down too.
+TEST_F(PlatesAlone, OfC3dFilesTheGoodOnesCount) {
+  const auto load = [this](const C3dFile& file, const std::vector<std::string>& named = {}) {
+    EXPECT_FALSE(WriteC3d(Path("t.c3d"), file));
+    return Load([&named](Json* entry) {
+      (*entry)["fps"] = 100;
+      (*entry)["subjects"][0]["mass_kg"] = 700.0 / kGravity;
+      (*entry)["force_plates"] = {{"use", "measure"}, {"file", "t.c3d"}};
+      if (!named.empty()) (*entry)["force_plates"]["plates"] = named;
+    });
+  };
+  C3dFile file = SampleC3d();
+  file.platforms.push_back(file.platforms[0]);
+  file.platforms[1].type = 5;
+  const auto loaded = Unwrapped(load(file));
+  EXPECT_NEAR(loaded[0].people[0].plates[5].force.z(), 700.0, 1e-2);
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_EQ(warnings_[0].text,
+            "recording 'a': platform:2 has the TYPE 5; types 1 to 4 are known; it is left out");
+  EXPECT_TRUE(Contains(ProblemOf(load(file, {"platform:2"})), "platform:2 has the TYPE 5"));
+  file.platforms[1].type = 2;
+  file.platforms[1].corners.rowwise().reverseInPlace();
+  EXPECT_TRUE(load(file).ok());
+  EXPECT_TRUE(Contains(warnings_.at(0).text, "platform:2 faces down"));
+  file.platforms[0] = file.platforms[1];
+  EXPECT_TRUE(Contains(ProblemOf(load(file)), "faces down: are up and forward right, and do COR"));
 }
 
 TEST_F(PlatesAlone, MayHaveAnotherRateAndStart) {

@@ -46,6 +46,30 @@ TEST_F(SensorChoiceTest, AnalogChannel) {
   EXPECT_TRUE(Contains(Message(Choice("a.c3d", "")), "platform:1"));
 }
 
+// A gain counts, whatever the unit of the channel is; without one, the unit does.
+TEST_F(SensorChoiceTest, ChannelsInOtherUnits) {
+  C3dFile file = SampleC3d();
+  for (const auto& [unit, newtons] :
+       {std::pair("kN", 1e3), std::pair("lbf", 4.44822), std::pair("Newton", 1.0),
+        std::pair("", 1.0), std::pair("V", 0.0), std::pair("mN", 0.0)}) {
+    file.analog[6].unit = unit;
+    ASSERT_FALSE(WriteC3d(Path("u.c3d"), file));
+    SensorChoice choice = Choice("u.c3d", "rod");
+    choice.zero_n = 0.0;
+    const Result<SensorRecord> read = ReadSensor(choice);
+    choice.gain = 2.0;
+    const double sample = 40.0 * std::sin(0.5);
+    EXPECT_NEAR(Unwrapped(ReadSensor(choice)).force[10].x(), 2.0 * sample, 1e-4) << unit;
+    if (newtons == 0.0) {
+      EXPECT_TRUE(
+          Contains(ProblemOf(read), std::string("rod is in '") + unit + "' (ANALOG:UNITS)"));
+      EXPECT_TRUE(Contains(ProblemOf(read), "\"gain\""));
+    } else {
+      EXPECT_NEAR(Unwrapped(read).force[10].x(), newtons * sample, 1e-4 * newtons) << unit;
+    }
+  }
+}
+
 TEST_F(SensorChoiceTest, Platform) {
   SensorChoice choice = Choice("a.c3d", "platform:1");
   const SensorRecord record = Unwrapped(ReadSensor(choice));
@@ -53,6 +77,12 @@ TEST_F(SensorChoiceTest, Platform) {
   EXPECT_NEAR(record.force[0].z(), 700.0, 1e-3);
   ASSERT_TRUE(record.height_m);
   EXPECT_NEAR(*record.height_m, 0.0, 1e-6);  // it lies on the floor
+  C3dFile file = SampleC3d();
+  for (int c = 3; c < 6; ++c) file.analog[c].unit = "V";
+  ASSERT_FALSE(WriteC3d(Path("v.c3d"), file));
+  std::vector<std::string> warnings;
+  ASSERT_TRUE(ReadSensor(Choice("v.c3d", "platform:1"), &warnings).ok());
+  EXPECT_EQ(warnings.size(), 1u);
   // In a file whose y is up, the same numbers point elsewhere.
   choice.up = "y";
   choice.forward = "z";
