@@ -74,7 +74,7 @@ struct C3dParameter {
   std::string group, name;
   C3dType type = C3dType::kReal;
   std::vector<int> dimensions;     // empty for a single value
-  std::vector<double> numbers;     // bytes, integers (signed) and reals
+  std::vector<double> numbers;     // bytes (unsigned), integers (signed) and reals
   std::vector<std::string> texts;  // kText: one per string, blanks at the end cut off
 };
 
@@ -100,9 +100,10 @@ struct C3dEvent {
   std::string context;  // Left, Right, General; may be empty
 };
 
-// The place of a force platform and the channels it fills (evaluated by force_sensors.h).
+// The place of a force platform and the channels it fills, as the file has them, right or wrong;
+// what it does not say is NaN, no channels, or type 0 (evaluated, and judged, by force_sensors.h).
 struct C3dPlatform {
-  int type = 2;               // 1 to 4
+  int type = 2;
   std::vector<int> channels;  // indices into the analog channels, from 0
   Eigen::Matrix<double, 3, 4> corners = Eigen::Matrix<double, 3, 4>::Zero();          // point unit
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();                                   // point unit

@@ -35,7 +35,7 @@ FEATURES = [
     ("bodies, animation", 2000, 2003, r"ident/bodies|apps/pushid_animate|ident/figures/moving"),
     ("first frames", 1300, 1039, r"ident/(observed|forecasts|prediction/online|report/page/forecast)|apps/flags/(futures|observed)"),
     ("formations", 1600, 1699, r"ident/formations|models/crowd|apps/(formation|pushid_formation|flags/formation)"),
-    ("pushes", 2000, 2216, r"models/push|ident/(push/|model/push_range)|datasets/(sensors|formats/(push_csv|force_csv))|apps/(pushid_push|flags/push)"),
+    ("pushes", 2000, 2385, r"models/push|ident/(push/|model/push_range)|datasets/(sensors|formats/(push_csv|force_csv))|apps/(pushid_push|flags/push)"),
     ("design", 260, 296, r"ident/(validation/(experiment_design|study_plan|laboratory_plan|design)|report/design)"),
     ("prediction, evaluation, cross-validation", 2700, 4444, r"ident/(prediction|validation)|apps/pushid_(predict|evaluate|crossvalidate)|apps/flags/scheme"),
     ("loop and frequency", 800, 437, r"ident/(diagnostics/(frequency|loop|spectra|sway)|problem/linear_loop|report/loop|figures/bode)|models/modal"),

@@ -235,7 +235,7 @@ struct PlateFile {
     file.floating = true;
     file.Text("UNITS", lengths);
     file.Group("ANALOG");
-    file.Reals("SCALE", scale, {8});
+    file.Reals("SCALE", scale, {static_cast<int>(scale.size())});
     if (!units.empty()) file.Texts("UNITS", units, 6);
     file.Group("FORCE_PLATFORM");
     add("USED", [&](const char* name) { file.Integers(name, {1}, {}); });
@@ -359,7 +359,7 @@ const PlateCase kPlateCases[] = {
      [](PlateFile* p) {
        p->origin = {-5, 3, 40};
      },
-     "", 55, 33},
+     "", 45, 27},
     {"type_3", [](PlateFile* p) { p->MakeType3(); }, "", 50},
     {"places_negative",
      [](PlateFile* p) {
