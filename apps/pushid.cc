@@ -60,7 +60,9 @@ int Help() {
     }
   }
   std::printf(
-      "\npushid help COMMAND lists the flags of one; pushid --version prints the version.\n");
+      "\npushid help COMMAND shows an example of one, which works where apps/quickstart.sh wrote "
+      "its "
+      "files,\nand its flags; pushid --version prints the version.\n");
   return kDone;
 }
 

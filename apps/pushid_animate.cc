@@ -115,9 +115,8 @@ int main(int argc, char** argv) {
   pushid::JoinRepeated("set", pushid::kBetweenSets, argc, argv);
   return pushid::RunApp(
       argc, argv,
-      "pushid-animate shows recorded and predicted people, pendulums and net forces.\n\n"
-      "  pushid-animate --model=model.json --restoration=restoration --recordings=M/manifest.json "
-      "--id=NAME --out=motion.html --svg_out=poses.svg\n\n"
-      "Several what-ifs are shown over the fitted model: --set=Kp_theta=1200 --set=Kp_theta=1800",
+      "pushid-animate shows recorded and predicted people, pendulums and forces as a web page.\n"
+      "  pushid-animate --model=model.json --recordings=held-out/manifest.json --id=S01_00_weak "
+      "--out=motion.html",
       Run);
 }

@@ -171,8 +171,9 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
   ProgressLine line;
   const BatchOutcome o = OrFail(RunBatch(plan, jobs, options, [&line](const BatchProgress& p) {
     line.Show(std::to_string(p.done) + " done, " + std::to_string(p.failed) + " failed, " +
-              std::to_string(p.left) + " left" +
-              (p.done + p.failed > 0 ? ", about " + TimeText(p.seconds_left) : ""));
+                  std::to_string(p.left) + " left" +
+                  (p.done + p.failed > 0 ? ", about " + TimeText(p.seconds_left) : ""),
+              static_cast<double>(p.done + p.failed) / std::max(1, p.done + p.failed + p.left));
   }));
   line.Finish();
   if (FLAGS_summary) ShowSummary(plan, all);
@@ -206,7 +207,7 @@ int Run() {
 
 int main(int argc, char** argv) {
   return RunApp(argc, argv,
-                "pushid-batch runs the fits of a plan and gathers them in one table.\n\n"
+                "pushid-batch runs the fits of a plan and gathers them in one table.\n"
                 "  pushid-batch --plan=plan.toml --jobs=2",
                 Run);
 }

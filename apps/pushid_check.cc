@@ -137,12 +137,10 @@ int main(int argc, char** argv) {
       argv[i] = all;
     }
   }
-  return pushid::RunApp(
-      argc, argv,
-      "pushid-check questions a fitted model with the recordings that it was fitted to: profiles, "
-      "bootstrap,\nshorter horizons, what to record next. It adds the results to the model's file "
-      "(or writes them to "
-      "--model_out);\nreports and advice use them.\n\n"
-      "  pushid-check --model=model.json --recordings=M/manifest.json --bootstrap=199 --profile",
-      Run);
+  return pushid::RunApp(argc, argv,
+                        "pushid-check questions a fitted model: profiles, bootstrap, shorter "
+                        "horizons, what to record next.\n"
+                        "  pushid-check --model=model.json --recordings=recordings/manifest.json "
+                        "--profile --bootstrap=99",
+                        Run);
 }

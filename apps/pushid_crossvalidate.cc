@@ -220,8 +220,7 @@ int main(int argc, char** argv) {
   pushid::JoinRepeated("compare", ';', argc, argv);
   return pushid::RunApp(
       argc, argv,
-      "pushid-crossvalidate fits on some recordings and scores the predictions of "
-      "the others.\n\n  pushid-crossvalidate --recordings=M/manifest.json "
-      "--setting=single --compare='pd: --preset=ldp'",
+      "pushid-crossvalidate fits on some recordings and scores the predictions of the others.\n"
+      "  pushid-crossvalidate --recordings=recordings/manifest.json --compare='pd: --preset=ldp'",
       Run);
 }

@@ -87,9 +87,10 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return pushid::RunApp(argc, argv,
-                        "pushid-evaluate compares a model's predictions with recordings.\n\n  "
-                        "pushid-evaluate --model=model.json --recordings=M/manifest.json "
-                        "--setting=single --json_out=scores.json",
-                        Run);
+  return pushid::RunApp(
+      argc, argv,
+      "pushid-evaluate measures the errors of a model's predictions, beside two baselines.\n"
+      "  pushid-evaluate --model=model.json --recordings=held-out/manifest.json "
+      "--json_out=scores.json",
+      Run);
 }

@@ -86,9 +86,9 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return pushid::RunApp(argc, argv,
-                        "pushid-fit identifies friction, balance gains and the push tail from push "
-                        "recordings.\n\n  pushid-fit --recordings=M/manifest.json --setting=single "
-                        "--model_out=model.json",
-                        Run);
+  return pushid::RunApp(
+      argc, argv,
+      "pushid-fit identifies friction, balance gains and the push tail from recordings of pushes.\n"
+      "  pushid-fit --recordings=recordings/manifest.json --setting=single --model_out=model.json",
+      Run);
 }

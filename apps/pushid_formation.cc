@@ -557,11 +557,10 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return pushid::RunApp(
-      argc, argv,
-      "pushid-formation rolls an identified model out on people who stand together: who moves, "
-      "when, and\nhow far the push travels.\n\n"
-      "  pushid-formation --model=model.json --formation=line --people=10 --push=80 "
-      "--svg_out=wave.svg",
-      Run);
+  return pushid::RunApp(argc, argv,
+                        "pushid-formation pushes people who stand together: who moves, when, and "
+                        "how far the push travels.\n"
+                        "  pushid-formation --model=model.json --formation=line --people=10 "
+                        "--push=80 --svg_out=wave.svg",
+                        Run);
 }

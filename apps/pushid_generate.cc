@@ -215,8 +215,8 @@ std::vector<std::vector<SampledFuture>> Samples(const MotionGenerator& generator
   for (const ForecastWindow& window : windows) {
     all.push_back(
         generator.Sample({{window.observed}}, kForecastFrames, FLAGS_samples, normal).front());
-    line.Show("sampling futures: window " + std::to_string(all.size()) + " of " +
-              std::to_string(windows.size()));
+    line.OfJobs("sampling futures: window")(static_cast<int>(all.size()),
+                                            static_cast<int>(windows.size()));
   }
   line.Finish();
   return all;
@@ -491,10 +491,10 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return pushid::RunApp(argc, argv,
-                        "pushid-generate continues observed motion with a learned generator and "
-                        "reports the error against the recording.\n\n"
-                        "  pushid-generate --model=generator --folder=cmu_mocap "
-                        "--protocol=validation --json_out=errors.json",
-                        Run);
+  return pushid::RunApp(
+      argc, argv,
+      "pushid-generate continues observed motion by a learned generator, and measures its errors.\n"
+      "  pushid-generate --model=generator --folder=cmu_mocap --protocol=validation "
+      "--json_out=errors.json",
+      Run);
 }

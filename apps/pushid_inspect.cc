@@ -177,14 +177,9 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return pushid::RunApp(
-      argc, argv,
-      "pushid-inspect shows what files contain (BVH, C3D, TRC, STO, MOT, CSV, a manifest) and "
-      "warns about units, axes, rate, gaps, jumps, standing height, start and onset.\n\n"
-      "  pushid-inspect trial.c3d other.trc\n"
-      "  pushid-inspect one/manifest.json,two/manifest.json\n"
-      "  pushid-inspect table.csv --mapping=mapping.json\n"
-      "  pushid-inspect trial.c3d --svg_out=trial.svg\n"
-      "  pushid-inspect --wave crowd1.txt crowd2.txt",
-      Run, &g_files);
+  return pushid::RunApp(argc, argv,
+                        "pushid-inspect shows what files contain (BVH, C3D, TRC, STO, MOT, CSV, "
+                        "manifests), with warnings.\n"
+                        "  pushid-inspect recordings/bvh/S01_00_weak.bvh recordings/manifest.json",
+                        Run, &g_files);
 }

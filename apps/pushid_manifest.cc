@@ -151,8 +151,8 @@ int Run() {
 int main(int argc, char** argv) {
   return pushid::RunApp(
       argc, argv,
-      "pushid-manifest writes the manifest of recordings whose file names follow a pattern.\n\n"
-      "  pushid-manifest --folder=data --pattern='{setting}/{subject}_{magnitude}_{take}.c3d' "
-      "--push_pattern='push/{subject}_{take}.csv' --masses=masses.csv --out=data/manifest.json",
+      "pushid-manifest writes the manifest of recordings whose file names follow a pattern.\n"
+      "  pushid-manifest --folder=recordings --pattern='bvh/{subject}_{take}_{magnitude}.bvh' "
+      "--mass=75 --out=mine.json",
       Run);
 }

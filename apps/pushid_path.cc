@@ -124,7 +124,10 @@ int Run() {
 int main(int argc, char** argv) {
   return pushid::RunApp(
       argc, argv,
-      "pushid-path finds the most probable path of a person between two states.\n\n  pushid-path "
-      "--model=model.json --from=xd=0.5 --to='x=0.4,xd=0; x=0.8,xd=0' --frames=90 --out=path.csv",
+      "pushid-path finds the most probable path between two states, by a model with process "
+      "noise.\n"
+      "  pushid-fit --recordings=recordings/manifest.json --likelihood=innovation "
+      "--model_out=noise.json && "
+      "pushid-path --model=noise.json --from=xd=0.5 --to=x=0.4,xd=0 --out=path.csv",
       Run);
 }

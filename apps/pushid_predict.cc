@@ -185,11 +185,10 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return pushid::RunApp(
-      argc, argv,
-      "pushid-predict rolls a model out from a recording's first frame and push.\n\n"
-      "  pushid-predict --model=model.json --recordings=M/manifest.json "
-      "--id=NAME --out=trajectory.csv\n  pushid-predict --model=model.json "
-      "--restoration=restoration --recordings=M/manifest.json --id=NAME --out=motion.bvh",
-      Run);
+  return pushid::RunApp(argc, argv,
+                        "pushid-predict predicts the motion after a push, from a recording's first "
+                        "frame and the push.\n"
+                        "  pushid-predict --model=model.json --recordings=held-out/manifest.json "
+                        "--id=S01_00_weak --out=trajectory.csv",
+                        Run);
 }

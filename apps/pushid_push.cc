@@ -352,13 +352,10 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return pushid::RunApp(argc, argv,
-                        "pushid-push computes the push of a recording: by inverse dynamics over a "
-                        "window of its motion, or from a measured force.\n\n"
-                        "  pushid-push --recordings=M/manifest.json --id=NAME --out=push.csv\n"
-                        "  pushid-push --recordings=M/manifest.json --id=NAME --sensor=force.csv "
-                        "--height=0.9 --out=push.csv\n"
-                        "  pushid-push --recordings=M/manifest.json --id=NAME --sensor=trial.c3d "
-                        "--sensor_column=platform:1 --estimate_offset --out=push.csv",
-                        Run);
+  return pushid::RunApp(
+      argc, argv,
+      "pushid-push computes the push of a recording, by inverse dynamics or from a measured "
+      "force.\n"
+      "  pushid-push --recordings=recordings/manifest.json --id=S01_00_weak --out=push.csv",
+      Run);
 }

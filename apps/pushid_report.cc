@@ -106,9 +106,8 @@ int Run() {
 int main(int argc, char** argv) {
   return RunApp(
       argc, argv,
-      "pushid-report prints the report of an identified model, or writes it as an HTML page.\n\n"
-      "  pushid-report --model=model.json\n"
-      "  pushid-report --model=model.json --recordings=M/manifest.json --html_out=report.html\n"
-      "  pushid-report --model=model.json --recordings=M/manifest.json --figures_out=figures",
+      "pushid-report prints the report of a fitted model, or writes it as a page or as figures.\n"
+      "  pushid-report --model=model.json --recordings=recordings/manifest.json "
+      "--html_out=report.html",
       Run);
 }

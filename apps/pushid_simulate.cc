@@ -231,11 +231,9 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return pushid::RunApp(
-      argc, argv,
-      "pushid-simulate generates recordings of synthetic people with known parameters, alone or in "
-      "groups\n(pushid-formation --push=... prints the steps that a push makes).\n\n"
-      "  pushid-simulate --out=synthetic --people=4 --seed=1\n"
-      "  pushid-simulate --out=groups --people=6 --group_size=3",
-      Run);
+  return pushid::RunApp(argc, argv,
+                        "pushid-simulate makes recordings of synthetic people with known "
+                        "parameters, alone or in groups.\n"
+                        "  pushid-simulate --out=synthetic --people=4 --seed=1",
+                        Run);
 }

@@ -343,10 +343,9 @@ int Run() {
 
 int main(int argc, char** argv) {
   pushid::RestartWithBlasOfProcessor(argv);
-  return pushid::RunApp(
-      argc, argv,
-      "pushid-train-generator trains networks that continue observed motion, for pushid-generate.\n"
-      "Run again with the same --out, it continues an interrupted training.\n\n"
-      "  pushid-train-generator --folder=cmu_mocap --out=generator",
-      Run);
+  return pushid::RunApp(argc, argv,
+                        "pushid-train-generator trains networks that continue observed motion; run "
+                        "again, it goes on.\n"
+                        "  pushid-train-generator --folder=cmu_mocap --out=generator",
+                        Run);
 }

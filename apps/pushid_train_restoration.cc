@@ -264,10 +264,9 @@ int Run() {
 int main(int argc, char** argv) {
   pushid::RestartWithBlasOfProcessor(argv);
   return pushid::RunApp(argc, argv,
-                        "pushid-train-restoration trains the networks that convert the path of a "
-                        "pendulum into the motion of a body.\n"
-                        "Run again with the same --out, it continues an interrupted training.\n\n"
-                        "  pushid-train-restoration --recordings=M/manifest.json --setting=single "
-                        "--more_settings=groups --model=model.json --out=restoration",
+                        "pushid-train-restoration trains networks that make bodies of pendulums; "
+                        "run again, it goes on.\n"
+                        "  pushid-train-restoration --recordings=recordings/manifest.json "
+                        "--model=model.json --out=restoration",
                         Run);
 }

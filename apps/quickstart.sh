@@ -42,18 +42,29 @@ if [ $example = laboratory ]; then
 fi
 out=${out:-quickstart-output}
 
-say "Making recordings of four synthetic people with known parameters, with 2 mm of noise on the joints"
+# The study FOLDER SEED: recordings of eight people, and a fit with default flags, whose priors do not depend on the truth.
+study() {
+  "$bin/pushid-simulate" --out="$1/recordings" --people=8 --recordings_per_person=6 --seed="$2" --overwrite
+  "$bin/pushid-fit" --recordings="$1/recordings/manifest.json" --setting=single --quiet --model_out="$1/model.json" \
+    >"$1/report.txt"
+  "$bin/pushid-report" --model="$1/model.json" --truth="$1/recordings/manifest.json" >"$1/identified.txt"
+}
+
+say "Making recordings of eight synthetic people with known parameters, with 2 mm of noise on the joints; a fit of them"
 echo "These data come from the model that is fitted below: an example of the commands, and no test of the model."
-"$bin/pushid-simulate" --out="$out/recordings" --people=4 --recordings_per_person=6 --seed=1 --overwrite
+study "$out" 1
+cat "$out/identified.txt"
+
+say "Repeating the study with 20 other seeds: people, pushes and noise are drawn anew"
+repeated=$(mktemp -d -p /dev/shm 2>/dev/null || mktemp -d)  # thousands of small files: not on a disk
+trap 'rm -r "$repeated"' EXIT
+for seed in {2..21}; do
+  study "$repeated" "$seed" >/dev/null
+  tail -n 1 "$repeated/identified.txt"
+done >"$out/studies.txt"
 
 say "Making recordings of two other people, held out: the same parameters, other bodies and pushes"
 "$bin/pushid-simulate" --out="$out/held-out" --people=2 --recordings_per_person=3 --seed=2 --overwrite | tail -n 1
-
-say "Identifying friction, balance gains and the push tail from the four people's recordings"
-# With default flags, whose priors do not depend on this truth.
-"$bin/pushid-fit" --recordings="$out/recordings/manifest.json" --setting=single \
-  --model_out="$out/model.json" >"$out/report.txt"
-"$bin/pushid-report" --model="$out/model.json" --truth="$out/recordings/manifest.json" | tee "$out/identified.txt"
 
 say "Predicting the held-out pushes: mean and last error of the hip, compared with two baselines"
 "$bin/pushid-evaluate" --model="$out/model.json" --recordings="$out/held-out/manifest.json" \
@@ -77,6 +88,7 @@ echo "  held-out/        the recordings that were predicted"
 echo "  model.json       the identified model"
 echo "  report.txt       the report as text: status, errors, parameters that the data cannot separate"
 echo "  report.html      the report as a page with pictures; it needs no network"
+echo "  studies.txt      how many intervals covered in 20 other studies"
 echo "  scores.json      prediction errors on the held-out pushes"
 echo "  trajectory.csv   a predicted push: states, hip and forces over time"
 echo "  motion.html      animation of the recorded and the predicted person; poses.svg is a strip of their poses"
@@ -89,3 +101,6 @@ awk -F '   *' '/^mean over recordings/ {
   for (i = 3; i <= 5; ++i) sub(/ .*/, "", $i)
   print "mean error of the hip on held-out pushes: " $3 " m (static " $4 ", constant velocity " $5 ")"
 }' "$out/errors.txt"
+awk '{ inside += $1; all += $3; whole += $1 == $3 } END {
+  print NR " further studies with other seeds: " inside " of " all " intervals cover the truth; in " whole " of them all do"
+}' "$out/studies.txt"

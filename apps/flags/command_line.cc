@@ -115,35 +115,67 @@ std::string HeadingOf(const FlagInfo& flag) {
   return "settings";
 }
 
-// full: options that are rarely changed are described too, not only named.
-std::string FlagHelp(bool full) {
+// What people use, in this order of all programs: --help shows the first ten that a program has.
+constexpr char kMostUsed[] =
+    "plan jobs list dry_run gather shard summary job folder pattern push_pattern push_kind masses "
+    "formation model from to recordings setting more_settings id people group_size "
+    "recordings_per_person push spacing sensor compare scheme kind model_out out update protocol "
+    "window html_out figures_out json_out svg_out mass mapping wave restoration push_scale "
+    "push_again explain profile bootstrap horizon_check design learn_forecasts folds group_by "
+    "yardsticks bands per_recording details truth noise set preset fix free prior pool "
+    "contrast stance seed physics published samples crossvalidate frames direction height "
+    "sensor_column fps observed num_threads leave_out";
+constexpr size_t kShown = 10;
+constexpr size_t kHelpWidth = 100, kHelpIndent = 6, kHelpLines = 2;
+
+// Lines of at most kHelpWidth; only the first ones of a text that is too long.
+std::string Wrapped(const std::string& text, bool whole) {
+  std::string wrapped;
+  size_t at = 0;
+  for (size_t line = 0; at < text.size(); ++line) {
+    if (line == kHelpLines && !whole) return wrapped.insert(wrapped.size() - 1, " ...");
+    size_t end = at + kHelpWidth - kHelpIndent - 4;
+    end = end >= text.size() ? text.size() : text.rfind(' ', end);
+    if (end == std::string::npos || end <= at) end = std::min(text.size(), text.find(' ', at));
+    wrapped += std::string(kHelpIndent, ' ') + text.substr(at, end - at) + "\n";
+    at = end + 1;
+  }
+  return wrapped;
+}
+
+// The flags that people use, or all, by their headings.
+std::string FlagHelp(bool all) {
+  const std::vector<FlagInfo> flags = OwnFlags();
+  std::set<std::string> shown;
+  for (const std::string& name : SplitList(kMostUsed, ' ')) {
+    const auto has = [&name](const FlagInfo& flag) { return flag.name == name; };
+    if (shown.size() < kShown && std::any_of(flags.begin(), flags.end(), has)) shown.insert(name);
+  }
   std::map<std::string, std::string> below;
-  std::string named;
-  const auto add = [&below](const std::string& heading, const std::string& name,
-                            const std::string& text) {
-    below[heading] += "  " + name + "\n      " + text + "\n";
+  const auto add = [&](const std::string& heading, const std::string& name,
+                       const std::string& text) {
+    below[heading] += "  " + name + "\n" + Wrapped(text, all);
   };
-  for (const FlagInfo& flag : OwnFlags()) {
-    const std::string heading = HeadingOf(flag);
-    if (heading == kRarelyChanged && !full) {
-      named += (named.empty() ? "--" : " --") + flag.name;
-      continue;
-    }
+  for (const FlagInfo& flag : flags) {
+    if (!all && shown.count(flag.name) == 0) continue;
     const std::string value =
         flag.default_value.empty() ? "" : "=" + ShortestNumber(flag, flag.default_value);
-    add(heading, "--" + flag.name + value, flag.description);
+    add(HeadingOf(flag), "--" + flag.name + value, flag.description);
   }
-  add("general", "--flagfile=FILE", "read flags from a file, one per line");
-  add("general", "--v=0", "1: say every step of long work, and what the solver logs");
-  add("general", "--help, -h, --helpfull", "print this");
-  add("general", "--version", "print the version");
-  if (!named.empty()) add(kRarelyChanged, named, "--helpfull describes them");
+  if (all) {
+    add("general", "--flagfile=FILE", "read flags from a file, one per line");
+    add("general", "--v=0", "1: say every step of long work, and what the solver logs");
+    add("general", "--help, -h, --help=all", "print what people use, or all flags");
+    add("general", "--version", "print the version");
+  }
   std::string text;
   for (const Heading& heading : Headings()) {
-    const auto flags = below.find(heading.title);
-    if (flags != below.end()) text += "\n" + std::string(heading.title) + ":\n" + flags->second;
+    const auto found = below.find(heading.title);
+    if (found != below.end()) text += "\n" + std::string(heading.title) + ":\n" + found->second;
   }
-  return text;
+  return text + (all ? ""
+                     : "\n--help=all describes all " + std::to_string(flags.size()) +
+                           " flags; the example works where apps/quickstart.sh has run.\n");
 }
 
 // The error names the program, and the flag that may have been meant.
@@ -185,11 +217,13 @@ bool NamesFlag(const std::string& word) {
   return gflags::GetCommandLineFlagInfo(word.substr(2, word.find('=') - 2).c_str(), &flag);
 }
 
-// Checks names and values before gflags sees them. `-h` becomes --help.
+// Checks names and values before gflags sees them. `-h` becomes --help, --help=all what gflags has
+// for it.
 MaybeError CheckFlags(int argc, char** argv) {
-  static char help[] = "--help";
+  static char help[] = "--help", all[] = "--helpfull";
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "-h") == 0) argv[i] = help;
+    if (std::strcmp(argv[i], "--help=all") == 0) argv[i] = all;
     const std::string word = argv[i];
     if (word == "--" || word.find("undefok") != std::string::npos) return std::nullopt;
     if (word.size() < 2 || word[0] != '-') continue;

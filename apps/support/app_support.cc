@@ -5,6 +5,7 @@
 #include <gflags/gflags.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <csignal>
@@ -69,25 +70,41 @@ void WarnGrouped(const Warnings& warnings) {
 
 ProgressLine::~ProgressLine() { Finish(); }
 
-void ProgressLine::Show(const std::string& text) {
+namespace {
+
+// A share of unknown size is a mark that moves.
+std::string Bar(double share, double seconds) {
+  constexpr int kLength = 20, kMark = 3;
+  const bool known = share >= 0.0;
+  const int from = known ? 0 : static_cast<int>(4.0 * seconds) % (kLength - kMark + 1);
+  const int length = known ? static_cast<int>(kLength * std::min(1.0, share)) : kMark;
+  return std::string(kLength, '.').replace(from, length, length, '#');
+}
+
+}  // namespace
+
+void ProgressLine::Show(const std::string& text, double share) {
   if (FLAGS_minloglevel > google::GLOG_INFO) return;
   const bool all = VLOG_IS_ON(1), redraws = !all && isatty(STDERR_FILENO) != 0;
-  const double now = Now();
-  if (!all && last_shown_ >= 0.0 && now - last_shown_ < (redraws ? 0.05 : 1.0)) return;
+  const double now = Now(), elapsed = now - begin_;
+  if (!all && (elapsed < 1.0 || now - last_shown_ < (redraws ? 0.1 : 10.0))) return;
   last_shown_ = now;
+  std::string line = std::to_string(static_cast<int>(elapsed)) + " s  " + text;
   if (!redraws) {
-    LOG(INFO) << text;
+    LOG(INFO) << line;
     return;
   }
-  const std::string padding(width_ > text.size() ? width_ - text.size() : 0, ' ');
-  std::fprintf(stderr, "\r%s%s", text.c_str(), padding.c_str());
+  line = "[" + Bar(share, elapsed) + "] " + line;
+  const std::string padding(width_ > line.size() ? width_ - line.size() : 0, ' ');
+  std::fprintf(stderr, "\r%s%s", line.c_str(), padding.c_str());
   std::fflush(stderr);
-  width_ = text.size();
+  width_ = line.size();
 }
 
 JobProgress ProgressLine::OfJobs(const std::string& what) {
   return [this, what](int done, int total) {
-    Show(what + " " + std::to_string(done) + " of " + std::to_string(total));
+    Show(what + " " + std::to_string(done) + " of " + std::to_string(total),
+         static_cast<double>(done) / std::max(1, total));
   };
 }
 
@@ -137,7 +154,7 @@ void TrainingLine::Show(const std::string& step, double done) {
     const double left = (Now() - start_) / gained * (1.0 - done);
     text += ", " + std::to_string(static_cast<int>(std::lround(left))) + " s left";
   }
-  line_.Show(text);
+  line_.Show(text, done);
 }
 
 std::string Version() { return PUSHID_VERSION; }

@@ -37,18 +37,21 @@ int Fail(const Error& error);
 // Warnings that differ only in the recording are printed as one.
 void WarnGrouped(const Warnings& warnings);
 
-// One line that is redrawn on a terminal, plain lines (at most one a second) elsewhere; on stderr.
+// Progress of what takes more than a second, on stderr: on a terminal a bar that is redrawn, with
+// the elapsed time; elsewhere a line every ten seconds.
 class ProgressLine {
  public:
   ~ProgressLine();
-  void Show(const std::string& text);
+  // share: what is done of it; negative: unknown.
+  void Show(const std::string& text, double share = -1.0);
   void Finish();  // ends the line; also done by the destructor
 
   // Progress of many jobs: "recording 3 of 32". The line must outlive it.
   JobProgress OfJobs(const std::string& what);
 
  private:
-  double last_shown_ = -1.0;
+  const double begin_ = Now();
+  double last_shown_ = begin_;
   size_t width_ = 0;
 };
 

@@ -22,7 +22,7 @@ enum class OptionStage {
   kTable    // last: edits single parameters
 };
 
-// The heading of what most users leave alone; --helpfull describes it.
+// The heading of what most users leave alone.
 inline constexpr char kRarelyChanged[] = "rarely changed";
 
 struct FitOptionRow {

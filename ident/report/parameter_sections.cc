@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "datasets/files/number_text.h"
 #include "ident/report/report_text.h"
@@ -49,58 +48,9 @@ Interval Shown(double value, Interval interval) {
   return interval;
 }
 
-constexpr char kDataLook[] = "stroke:none;fill:#3b82f6";
-constexpr char kPriorLook[] = "stroke:none;fill:#d55e00";
-constexpr char kSettlingLook[] = "stroke:none;fill:#009e73";
-constexpr double kLeastDrawn = 0.001;  // smaller shares are narrower than a pixel
-
-// A bar in three parts for each parameter.
-ReportFigure SharesFigure(const FitResult& result) {
-  std::vector<const Estimate*> shown;
-  for (const Estimate& e : result.estimates) {
-    const bool split =
-        e.status != EstimateStatus::kFixed && e.status != EstimateStatus::kUnidentifiable;
-    if (split && result.options.table.Find(e.name) != nullptr) shown.push_back(&e);
-  }
-  Figure figure;
-  figure.legend = {{"data", kDataLook}};
-  const auto drawn = [&shown](double Shares::*part) {
-    return std::any_of(shown.begin(), shown.end(),
-                       [part](const Estimate* e) { return e->shares.*part >= kLeastDrawn; });
-  };
-  if (drawn(&Shares::prior)) figure.legend.push_back({"prior", kPriorLook});
-  if (drawn(&Shares::settling)) figure.legend.push_back({"settling", kSettlingLook});
-  Chart chart{"", "share of the variance, %"};
-  chart.x_from = 0.0;
-  chart.x_to = 100.0;
-  TextTable numbers(
-      {"parameter", "data", "prior", "settling", "prior_pull", "settling_pull", "unit", "status"});
-  for (const Estimate* e : shown) {
-    const Shares& s = e->shares;
-    const std::tuple<const char*, double, const char*> parts[] = {
-        {"data", s.data, kDataLook},
-        {"prior", s.prior, kPriorLook},
-        {"settling", s.settling, kSettlingLook}};
-    double from = 0.0;
-    for (const auto& [name, share, look] : parts) {
-      const double to = from + 100.0 * std::clamp(share, 0.0, 1.0);
-      chart.bars.push_back({static_cast<double>(chart.y_categories.size()), from, to, look,
-                            std::string(name) + " " + Rounded(100.0 * share, 3) + " %"});
-      from = to;
-    }
-    chart.y_categories.push_back(e->name);
-    chart.y_notes.push_back(NameOf(e->status));
-    numbers.Add({e->name, s.data, s.prior, s.settling, s.prior_pull, s.settling_pull, e->unit,
-                 NameOf(e->status)});
-  }
-  figure.panels = {chart};
-  return {"shares", "Shares of each value's variance: data, prior and settling constraint.", figure,
-          numbers};
-}
-
 }  // namespace
 
-ReportFigure IntervalFigure(const FittedModel& model) {
+ReportFigure IntervalFigure(const FittedModel& model, bool known) {
   Figure figure;
   TextTable numbers({"parameter", "unit", "value", "nominal", "lower95", "upper95",
                      "profile_lower95", "profile_upper95", "bootstrap_lower95",
@@ -108,6 +58,7 @@ ReportFigure IntervalFigure(const FittedModel& model) {
   for (const Estimate& e : model.fit.estimates) {
     const ParameterSpec* spec = model.fit.options.table.Find(e.name);
     if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
+    if (known && e.status != EstimateStatus::kIdentified) continue;
     IntervalRow row{e.name, e.unit, e.value, spec->nominal, {}};
     std::vector<std::string> cells = {e.name, e.unit, DoubleText(e.value),
                                       DoubleText(spec->nominal)};
@@ -126,10 +77,12 @@ ReportFigure IntervalFigure(const FittedModel& model) {
   if (!model.profiles.empty()) figure.legend.push_back({"profile", kProfileLook});
   if (model.bootstrap) figure.legend.push_back({"bootstrap", kBootstrapLook});
   figure.legend.push_back({"nominal", kMarkLook});
-  return {"forest",
-          "Fitted values (dots) with their 95 % intervals, and the nominal values (upright lines). "
-          "Every row has its own scale; an open interval extends to the edge.",
-          figure, numbers};
+  return {
+      known ? "known" : "forest",
+      (known ? "What the recordings identify: values" : "Fitted values") +
+          std::string(" (dots) with 95 % intervals, and nominal values (upright lines). Every row "
+                      "has its own scale; an open interval extends to the edge."),
+      figure, numbers};
 }
 
 ReportSection ParameterSection(const FittedModel& model) {
@@ -142,8 +95,7 @@ ReportSection ParameterSection(const FittedModel& model) {
   if (model.fit.verdict.checked()) {
     section.Show("taken as known, and what the recordings say of it", AssumptionTable(model.fit));
   }
-  const ReportFigure shares = SharesFigure(model.fit);
-  if (!shares.numbers.empty()) section.figures.push_back(shares);
+  section.figures.push_back(IntervalFigure(model, false));
   return section;
 }
 

@@ -15,8 +15,8 @@ ReportSection ProfileSection(const FittedModel& model);
 ReportSection BootstrapSection(const FittedModel& model);
 ReportSection HorizonCheckSection(const FittedModel& model);
 
-// The parameters' values with all intervals that are known.
-ReportFigure IntervalFigure(const FittedModel& model);
+// The values of the free parameters with all their intervals; known: only of those identified.
+ReportFigure IntervalFigure(const FittedModel& model, bool known);
 
 // Width of a table of colours that fills the page, pixels.
 inline constexpr double kWidestMap = 1000;

@@ -38,8 +38,8 @@ inline std::string Probed(std::string page, const std::string& script) {
 }
 
 // Pushes what is wrong with the page's layout: wider than its window; labels of a picture that are
-// cut off by its frame, lie on each other or are small; headings that the bar of links hides when
-// one goes there.
+// cut off by its frame, lie on each other or are small; headings that the links hide when one goes
+// there.
 inline constexpr char kLayoutProbe[] = R"js(
   const smallest = 9, touch = [1.5, 3.5];  // pixels; boxes of letters are higher than the letters
   const name = element => `${(element.closest('section') || document.body).id} '${element.textContent.trim()}'`;
@@ -66,7 +66,7 @@ inline constexpr char kLayoutProbe[] = R"js(
     section.scrollIntoView();
     const bar = document.querySelector('nav').getBoundingClientRect();
     const heading = section.querySelector('h2').getBoundingClientRect();
-    if (heading.top < bar.bottom && heading.bottom > bar.top) said.push('hidden: ' + name(link));
+    if (heading.top < bar.bottom && heading.bottom > bar.top && heading.left < bar.right) said.push('hidden: ' + name(link));
   }
   said.push(`${labels} labels in ${innerWidth} pixels`);
 )js";

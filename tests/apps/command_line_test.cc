@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -24,18 +26,81 @@ const std::vector<App> kApps = {
     {"pushid-crossvalidate", "--scheme"}, {"pushid-check", "--bootstrap"},
     {"pushid-formation", "--spacing"}};
 
+// One screen with the flags that people use, and all of them on demand.
 TEST_F(CommandLineTest, HelpNamesTheFlagsAndIsNoError) {
   for (const App& app : kApps) {
-    const AppRun run = RunApp(app.name, {"--help"});
-    EXPECT_EQ(run.exit_code, 0) << app.name;
-    EXPECT_TRUE(Contains(run.out, std::string("  ") + app.name)) << "an example call";
-    EXPECT_TRUE(Contains(run.out, app.flag));
-    EXPECT_TRUE(Contains(run.out, "--flagfile"));
-    EXPECT_TRUE(Contains(run.out, "--version"));
-    EXPECT_FALSE(Contains(run.out, "minloglevel")) << "flags of other libraries";
-    EXPECT_EQ(run.err, "");
+    SCOPED_TRACE(app.name);
+    const AppRun run = RunApp(app.name, {"--help"}), all = RunApp(app.name, {"--help=all"});
+    for (const AppRun& one : {run, all}) {
+      EXPECT_EQ(one.exit_code, 0);
+      EXPECT_TRUE(Contains(one.out, "\n  " + std::string(app.name) + " --")) << "an example call";
+      EXPECT_TRUE(Contains(one.out, app.flag));
+      EXPECT_FALSE(Contains(one.out, "minloglevel")) << "flags of other libraries";
+      EXPECT_EQ(one.err, "");
+      std::stringstream lines(one.out);
+      for (std::string line; std::getline(lines, line);) {
+        EXPECT_TRUE(line.size() <= 100 || Contains(line, app.name)) << line;
+      }
+    }
+    EXPECT_LE(std::count(run.out.begin(), run.out.end(), '\n'), 45);
+    EXPECT_TRUE(Contains(run.out, "--help=all"));
+    EXPECT_TRUE(Contains(all.out, "--flagfile"));
+    EXPECT_TRUE(Contains(all.out, "--version"));
+    EXPECT_TRUE(Contains(all.out, "--quiet"));
     EXPECT_EQ(RunApp(app.name, {"-h"}).out, run.out);
+    EXPECT_EQ(RunApp(app.name, {"--helpfull"}).out, all.out);
   }
+}
+
+// The second line of --help.
+std::string ExampleOf(const std::string& app) {
+  const std::string help = Succeeded(RunApp(app, {"--help"})).out;
+  const size_t begin = help.find('\n') + 1;
+  EXPECT_EQ(help.rfind(app + " ", 0), 0u) << "what it is for";
+  EXPECT_LT(help.find(app + " ", begin), help.find('\n', begin)) << help;
+  return help.substr(begin, help.find('\n', begin) - begin);
+}
+
+// In a folder with the files of apps/quickstart.sh, one after the other.
+TEST_F(CommandLineTest, ExamplesOfHelpWork) {
+  const std::string enter =
+      "set -e; cd '" + Path("") + "'; export PATH='" PUSHID_BIN_DIR "':$PATH; ";
+  const auto run = [&enter](const std::string& command) {
+    Succeeded(RunProgram("/bin/bash", {"-c", enter + command}));
+  };
+  run("pushid-simulate --out=recordings --people=4 --recordings_per_person=3 --seed=1; "
+      "pushid-simulate --out=held-out --people=2 --recordings_per_person=3 --seed=2");
+  for (const char* app :
+       {"fit", "check", "report", "evaluate", "crossvalidate", "predict", "animate", "formation",
+        "path", "simulate", "inspect", "manifest", "push"}) {
+    SCOPED_TRACE(app);
+    run(ExampleOf(std::string("pushid-") + app));
+  }
+  // These need a plan, recorded motion or LibTorch: their flags exist.
+  for (const std::string app :
+       {"pushid-batch", "pushid-generate", "pushid-train-restoration", "pushid-train-generator"}) {
+    if (!std::filesystem::exists(PUSHID_BIN_DIR "/" + app)) continue;
+    const std::string example = ExampleOf(app), help = RunApp(app, {"--help=all"}).out;
+    for (size_t at = example.find("--"); at != std::string::npos; at = example.find("--", at + 2)) {
+      const std::string flag = example.substr(at, example.find('=', at) - at);
+      EXPECT_TRUE(Contains(help, "  " + flag + "\n") || Contains(help, "  " + flag + "=")) << flag;
+    }
+  }
+}
+
+// A fit that takes longer is interrupted after three seconds. Elsewhere than on a terminal the
+// first line comes after ten.
+TEST_F(CommandLineTest, ProgressIsABarOnATerminalAndRareElsewhere) {
+  const std::string fit = "timeout --signal=INT 3 '" PUSHID_BIN_DIR "/pushid-fit' " + Recordings() +
+                          " --self_force=mlp:64";
+  EXPECT_FALSE(Contains(RunProgram("/bin/bash", {"-c", fit}).err, "iteration"));
+  const auto seen = [](const std::string& command) {
+    return RunProgram("/usr/bin/script", {"-qec", command, "/dev/null"}).out;
+  };
+  const std::string bar = seen(fit), quiet = seen(fit + " --quiet");
+  EXPECT_TRUE(Contains(bar, "###") && Contains(bar, " s  fitting")) << bar;
+  EXPECT_FALSE(Contains(bar, "] 0 s")) << bar;
+  EXPECT_FALSE(Contains(quiet, "fitting")) << quiet;
 }
 
 TEST_F(CommandLineTest, VersionIsTheProgramAndANumber) {
@@ -76,7 +141,7 @@ TEST_F(CommandLineTest, CtrlCSaysWhatIsKept) {
   EXPECT_FALSE(std::filesystem::exists(Path("m.json")));
 }
 
-// Steps are counted in lines; without --v at most one a second.
+// Steps are counted in lines.
 TEST_F(CommandLineTest, TheLogHasSeveritiesAndSaysEveryStep) {
   const auto log = [this](const std::string& how) {
     return RunApp("pushid-fit", {Recordings(), "--fix=mu_y=10", how}).err;
@@ -148,16 +213,6 @@ TEST_F(CommandLineTest, AFlagFileCountsLikeFlags) {
       WriteText("fit.flags", Recordings() + "\n--fix=mu=33\n--model_out=" + Path("m.json") + "\n");
   Succeeded(RunApp("pushid-fit", {"--flagfile=" + flags}));
   EXPECT_EQ(Json(Path("m.json"))["values"]["mu"], 33.0);
-}
-
-TEST_F(CommandLineTest, ProgressIsPlainLinesOnStderrAndCanBeSilenced) {
-  FitModel();
-  EXPECT_TRUE(Contains(fit_.err, "fitting "));
-  EXPECT_EQ(fit_.err.find('\r'), std::string::npos) << "no terminal: nothing to redraw";
-  EXPECT_EQ(fit_.err.back(), '\n');
-  EXPECT_FALSE(Contains(fit_.out, "fitting "));
-  FitModel("quiet.json", {"--quiet"});
-  EXPECT_EQ(fit_.err, "");
 }
 
 TEST_F(CommandLineTest, AFitThatDoesNotConvergeExitsWithTwo) {

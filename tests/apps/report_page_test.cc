@@ -74,11 +74,16 @@ TEST_F(ReportPage, LeadsWithPictures) {
   ASSERT_TRUE(Contains(page, "<figure>"));
   EXPECT_LT(page.find("<figure>"), page.find("<table>"));
   EXPECT_LT(page.find("<figure>"), page.find("<nav"));
+  EXPECT_LT(page.find("What to do next"), page.find("What is known"));
   const AppRun seen = Browse(Path("browser"), WriteText("probed.html", Framed({Probed(page, R"js(
   const panel = document.querySelector('figure .panels.scroll svg').getBoundingClientRect();
   said.push(panel.top + 0.5 * panel.height < innerHeight ? 'seen at once' : 'starts at ' + panel.top);
+  const beside = document.querySelector('nav').getBoundingClientRect().right <= panel.left;
+  const text = document.querySelector('p:not(header p)').getBoundingClientRect();
+  said.push((beside ? 'links beside' : 'links below') + (text.width > innerWidth / 2 ? '' : ', narrow'));
 )js")})));
-  for (const int frame : {0, 1}) EXPECT_EQ(WhatItSaid(seen, frame), "seen at once");
+  EXPECT_EQ(WhatItSaid(seen, 0), "seen at once; links beside");
+  EXPECT_EQ(WhatItSaid(seen, 1), "seen at once; links below");
 }
 
 TEST_F(ReportPage, FiguresAndTablesAsFiles) {
@@ -114,6 +119,7 @@ TEST_F(ReportPage, FiguresAndTablesAsFiles) {
     EXPECT_GT(caption.size(), 10u);
   }
   EXPECT_TRUE(Contains(ReadText(Path("figures/table_parameters_1.csv")), "parameter,value"));
+  EXPECT_FALSE(std::filesystem::exists(Path("figures/known.svg"))) << "two people identify nothing";
 }
 
 TEST_F(ReportPage, FiguresReplaceFiguresAlone) {

@@ -80,11 +80,11 @@ def by_feature():
 
 
 def flags():
-    """Program -> its flags by --help, without those that every program has."""
+    """Program -> its flags by --help=all, without those that every program has."""
     programs = sorted(name for name in os.listdir(studies.BIN) if re.match(r"pushid-(?!benchmarks|.*study)", name))
     own = {}
     for name in programs:
-        text = subprocess.run([os.path.join(studies.BIN, name), "--help"], capture_output=True, text=True).stdout
+        text = subprocess.run([os.path.join(studies.BIN, name), "--help=all"], capture_output=True, text=True).stdout
         own[name] = set(re.findall(r"^ *--(\w+)", text, re.M))
     shared = set.intersection(*own.values()) if own else set()
     return {name: found - shared for name, found in own.items()}, shared

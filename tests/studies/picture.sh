@@ -19,7 +19,7 @@ if command -v chromium >/dev/null; then
   "$bin/pushid-report" --model="$work/single.json" --recordings="$work/recordings/manifest.json" \
     --html_out="$work/report.html" 2>/dev/null
   chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --user-data-dir="$work/browser" \
-    --window-size="900,620" --screenshot="$pictures/report.png" "file://$work/report.html" 2>/dev/null
+    --window-size="1200,760" --screenshot="$pictures/report.png" "file://$work/report.html" 2>/dev/null
 fi
 python=/usr/bin/python3  # which Debian's matplotlib belongs to
 if [ -f "$recordings" ] && [ -x "$bin/pushid-train-restoration" ] && $python -c "import matplotlib" 2>/dev/null; then

@@ -1,6 +1,6 @@
 """Prediction of single people who were not in the fit: schemes of folds, changes of the model, bands.
 
-summary  the row of `tail` and its baselines (README.md)
+summary  the first page's table of errors on folds (README.md)
 schemes  `tail` and `ldp` beside baselines, three ways of holding out (ident/validation/README.md); half a minute
 changes  what was tried on top of `tail`, paired differences (ident/validation/README.md); half a minute
 networks learned forces and rods on top of `tail`, 4 folds (ident/validation/README.md); ten minutes
@@ -55,7 +55,6 @@ def summary():
 
     names = ["static", "constant velocity", "ridge", "physics (`tail`, `group`)", "diffusion and physics"]
     rows = [[name, cell(of_one.get(name)), cell(of_groups.get(name))] for name in names]
-    rows.append(["LDP (Yue et al., CVPR 2024), claimed", "0.086 / 0.171", "0.092 / 0.218"])
     return studies.table(["error of the hip, m: mean / at the end", "a person outside the fit",
                           "groups, four folds"], rows)
 

@@ -356,7 +356,7 @@ Chart TypicalChart(const RecordingView& view, const std::string& title) {
   return chart;
 }
 
-// Hips of the recordings that are predicted best, in the middle and worst; none without recordings.
+// Hips of the recordings that are predicted in the middle, best and worst; none without recordings.
 std::optional<ReportFigure> TypicalFigure(const ReportSource& source) {
   std::vector<std::pair<double, const RecordingView*>> ranked;
   for (const RecordingView& view : source.views) {
@@ -367,8 +367,9 @@ std::optional<ReportFigure> TypicalFigure(const ReportSource& source) {
   if (ranked.empty()) return std::nullopt;
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<std::pair<std::string, size_t>> shown = {{"best", 0}};
+  std::vector<std::pair<std::string, size_t>> shown;  // a telephone shows the first at once
   if (ranked.size() > 2) shown.emplace_back("median", (ranked.size() - 1) / 2);
+  shown.emplace_back("best", 0);
   if (ranked.size() > 1) shown.emplace_back("worst", ranked.size() - 1);
   std::vector<LegendEntry> legend;
   std::vector<Chart> panels;
@@ -392,11 +393,10 @@ std::optional<ReportFigure> TypicalFigure(const ReportSource& source) {
                legend.end());
   return ReportFigure{
       "typical",
-      "Measured and predicted hips in typical recordings: of these " +
-          std::to_string(ranked.size()) + " those whose mean error (" + kMetrics[kHipAde].name +
-          ") is the smallest, the median and the largest. Predicted from the first frame and the "
-          "push alone, with 50 % and 90 % bands; lengths are along the push, from where the pushed "
-          "person starts.",
+      "Hips along the push, from where the pushed person starts, in those of " +
+          CountText(ranked.size(), "recording") +
+          " whose mean error is the median, the smallest and the largest: measured, and predicted "
+          "from the first frame and the push alone.",
       {legend, panels},
       numbers};
 }
@@ -462,7 +462,10 @@ ReportSection LeadSection(const ReportSource& source) {
   ReportSection section = ShortSection(source.model, Travels(source.propagation));
   if (const std::optional<ReportFigure> typical = TypicalFigure(source))
     section.figures.push_back(*typical);
-  section.figures.push_back(IntervalFigure(source.model));
+  const ReportFigure known = IntervalFigure(source.model, true);
+  if (!known.numbers.empty()) section.figures.push_back(known);
+  // What to do next stands below the figures, and the rest of what is known below that.
+  std::rotate(section.paragraphs.begin(), section.paragraphs.end() - 1, section.paragraphs.end());
   const std::string verdict = FirstSentences(source.fit);
   section.verdict_first = !source.fit.verdict.fails() && source.fit.verdict.none_identified.empty();
   if (section.verdict_first) {
