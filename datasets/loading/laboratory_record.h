@@ -15,9 +15,10 @@
 // prefix of its own:
 //   time,fx,fy,fz,px,py             time,left_fx,...,left_py,right_fx,...,right_py
 //   time,fx,fy,fz,mx,my,mz          N m about the entry's `origin`, instead of a centre
-// N on the person (with moments also on the platform, which can only be pressed), m, in the axes
-// that are said. Forces of several platforms add up, and their
-// moments do. Low-passed without delay below half the frame rate before frames are taken.
+// N on the person or on the platform, which can only be pressed, m, in the axes that are said.
+// Forces of several platforms add up, and their moments do. Low-passed without delay below half the
+// frame rate before frames are taken. Frames near samples of a table where a platform is pressed
+// and has no centre of pressure (a gap, or zeros) have no weight.
 #pragma once
 
 #include <Eigen/Core>
@@ -82,9 +83,9 @@ MaybeError CheckPlates(const std::string& file, const Recording& recording, int 
 
 // Into the person's `plates`. Errors: those of the files, no such platform or column, a record that
 // ends early, a mean vertical force that is not the weight, a centre of pressure off the platform
-// or far from the feet.
+// or far from the feet. Warnings: those of the tracks.
 MaybeError LoadPlates(const ManifestRecording& entry, const ManifestPlates& plates,
-                      double lowpass_hz, Recording* recording);
+                      double lowpass_hz, Recording* recording, Warnings* warnings = nullptr);
 
 // Force platforms as their files have them: read, turned to the project's axes, added up.
 
@@ -95,7 +96,8 @@ struct PlateTracks {
   std::string file;
   double rate_hz = 0.0, first_s = 0.0;
   int last_line = 0;
-  int platforms = 0;  // that were added up
+  int platforms = 0;                    // that were added up
+  std::vector<std::string> warnings{};  // what is unusual about them, and which are left out
   std::vector<Eigen::Vector3d> force, moment;
 
   void Add(size_t at, const Eigen::Vector3d& on_person, const Eigen::Vector3d& centre) {
@@ -108,6 +110,9 @@ struct PlateTracks {
     moment[at] += on_person.z() * Eigen::Vector3d(centre.x(), centre.y(), 1.0);
   }
   double last_s() const { return first_s + (static_cast<double>(force.size()) - 1.0) / rate_hz; }
+
+  // Samples, counted from 0, at which the centre of a platform that is pressed is not known.
+  std::vector<double> unknown{};
 };
 
 // The platforms of a manifest's entry, from the file that it names or from the motion's; a motion's

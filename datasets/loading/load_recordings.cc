@@ -102,7 +102,7 @@ MaybeError LoadLaboratory(const ManifestRecording& entry, const GroundReading& r
     recording->ground = std::move(ground.value());
   }
   for (const ManifestPlates& plates : entry.plates) {
-    if (MaybeError failed = LoadPlates(entry, plates, reading.lowpass_hz, recording)) {
+    if (MaybeError failed = LoadPlates(entry, plates, reading.lowpass_hz, recording, warnings)) {
       return failed;
     }
   }
