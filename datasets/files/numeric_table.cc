@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <unordered_set>
 
@@ -14,7 +15,28 @@ namespace pushid {
 namespace {
 
 constexpr std::size_t kMostColumns = 100000;
-constexpr double kEvenness = 0.01;  // of a time step
+constexpr double kEvenness = 0.01;           // of a time step
+constexpr double kSurelyMilliseconds = 0.5;  // between rows; nothing is recorded as rarely in s
+// Plain names of times: in ms, in what their file says nothing of, in s.
+constexpr const char* kTimes[] = {"timems", "tms", "time",    "t",
+                                  "times",  "ts",  "timesec", "seconds"};
+constexpr int kInMilliseconds = 2, kInSecondsSurely = 4;
+
+int TimeNameOf(const std::string& name) {
+  return static_cast<int>(std::find(std::begin(kTimes), std::end(kTimes), PlainName(name)) -
+                          std::begin(kTimes));
+}
+
+void TurnTimesToSeconds(NumericTable* table) {
+  const int index = FindTimeColumn(table->names, "");
+  const auto found = std::find(table->chosen.begin(), table->chosen.end(), index);
+  if (index < 0 || found == table->chosen.end() || table->num_rows() < 2) return;
+  std::vector<double>& time = table->data[found - table->chosen.begin()];
+  const double step = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
+  const int name = TimeNameOf(table->names[index]);
+  if (name >= (step >= kSurelyMilliseconds ? kInSecondsSurely : kInMilliseconds)) return;
+  for (double& t : time) t /= 1000.0;
+}
 
 bool IsMissing(std::string_view cell) {
   return cell.empty() || EqualsIgnoringCase(cell, "nan") || EqualsIgnoringCase(cell, "n/a");
@@ -50,6 +72,7 @@ class TableReader {
       return reader_.ErrorHere("the header declares " + std::to_string(announced_rows_) +
                                " rows, the file has " + std::to_string(rows));
     }
+    TurnTimesToSeconds(&table_);
     table_.content_hash = reader_.HashHex();
     return std::move(table_);
   }
@@ -80,6 +103,11 @@ class TableReader {
           split == std::string_view::npos ? "" : Trimmed(line.substr(split + 1));
       if (EqualsIgnoringCase(key, "inDegrees"))
         table_.in_degrees = EqualsIgnoringCase(value, "yes");
+      if (EqualsIgnoringCase(key, "DataType") && !EqualsIgnoringCase(value, "double")) {
+        return reader_.ErrorHere("DataType is " + Quoted(value) +
+                                 ": its cells hold several numbers; flatten the table (OpenSim: "
+                                 "TimeSeriesTableVec3.flatten()) and export it again");
+      }
       const bool rows = EqualsIgnoringCase(key, "nRows") || EqualsIgnoringCase(key, "datarows");
       const bool columns =
           EqualsIgnoringCase(key, "nColumns") || EqualsIgnoringCase(key, "datacolumns");
@@ -143,7 +171,11 @@ class TableReader {
   }
 
   MaybeError ReadRow(std::string_view line) {
-    TableCells cells(line, separator_);
+    // A row that is cut behind a tab would have an empty cell.
+    const bool tabs =
+        format_ == TableFormat::kStorage && reader_.ended_in_newline() &&
+        std::count(line.begin(), line.end(), '\t') + 1 == static_cast<std::ptrdiff_t>(row_.size());
+    TableCells cells(line, tabs ? '\t' : separator_);
     std::size_t count = 0;
     for (std::string_view cell; cells.Next(&cell); ++count) {
       if (count == row_.size()) {
@@ -204,33 +236,64 @@ Result<NumericTable> ReadNumericTable(const std::string& path, TableFormat forma
   return TableReader(path, format, options).Read();
 }
 
+std::string PlainName(std::string_view name) {
+  std::string plain;
+  for (char c : name) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) plain += c;
+  }
+  return plain;
+}
+
 int FindTimeColumn(const std::vector<std::string>& names, const std::string& wanted) {
   for (std::size_t i = 0; i < names.size(); ++i) {
-    for (const char* name : {"time", "t", "time_s", "time(s)", "time (s)", "seconds"}) {
-      if (wanted.empty() ? EqualsIgnoringCase(names[i], name) : names[i] == wanted) {
-        return static_cast<int>(i);
-      }
-    }
+    const bool is_time = TimeNameOf(names[i]) < static_cast<int>(std::size(kTimes));
+    if (wanted.empty() ? is_time : names[i] == wanted) return static_cast<int>(i);
   }
   return -1;
 }
+
+namespace {
+
+int LineOf(const NumericTable& table, int row) {
+  return row < static_cast<int>(table.lines.size()) ? table.lines[static_cast<std::size_t>(row)]
+                                                    : 0;
+}
+
+}  // namespace
 
 Result<double> EvenTimeStep(const NumericTable& table, int time_column) {
   const std::vector<double>* time = table.Column(time_column);
   const int rows = table.num_rows();
   if (time == nullptr || rows < 2) return Error{"there are fewer than two times", table.path};
   const double step = ((*time)[rows - 1] - (*time)[0]) / (rows - 1);
+  // The second part is what three decimals leave of a time.
+  const double slack = kEvenness * step + std::fmin(1.1e-3, 0.3 * step);
+  std::vector<double> steps;
+  bool even = true;
   for (int i = 1; i < rows; ++i) {
     const double now = (*time)[i] - (*time)[i - 1];
-    // Written so that NaN fails. The second part is what three decimals leave of a time.
-    const double slack = kEvenness * step + std::fmin(1.1e-3, 0.3 * step);
-    if (!(now > 0.0 && std::fabs(now - step) <= slack)) {
-      return Error{"the times do not ascend in even steps: " + Rounded(now) + " s where " +
-                       Rounded(step) + " s is usual; resample the file",
-                   table.path, i < static_cast<int>(table.lines.size()) ? table.lines[i] : 0};
-    }
+    if (!std::isfinite(now)) return Error{"a time is missing", table.path, LineOf(table, i)};
+    steps.push_back(now);
+    even = even && now > 0.0 && std::fabs(now - step) <= slack;
   }
-  return step;
+  if (even) return step;
+  // From the mean every row is off where some are missing; the one that is farthest from the median
+  // tells where.
+  std::vector<double> sorted = steps;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double usual = *middle;
+  const auto nearer = [usual](double a, double b) {
+    return std::fabs(a - usual) < std::fabs(b - usual);
+  };
+  const auto at = std::max_element(steps.begin(), steps.end(), nearer);
+  const int row = 1 + static_cast<int>(at - steps.begin());
+  return Error{*at <= 0.0 ? "the times do not ascend: " + Rounded((*time)[row], 9) +
+                                " s comes after " + Rounded((*time)[row - 1], 9) + " s"
+                          : "the times do not ascend in even steps: " + Rounded(*at) + " s where " +
+                                Rounded(usual) + " s is usual; resample the file",
+               table.path, LineOf(table, row)};
 }
 
 MaybeError WriteNumericTable(const std::string& path, TableFormat format,

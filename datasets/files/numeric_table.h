@@ -4,13 +4,16 @@
 //   the line of names holds most of. Names with a separator in them stand in quotes. Lines that
 //   start with # are comments.
 //   Storage: a head with `name=value` lines and `endheader`, then a line of column names and rows,
-//   separated by blanks.
+//   separated by blanks, or by tabs, between which cells may be empty.
 //
-// Cells that are empty, NaN, nan or n/a are missing and come out as NaN.
+// Cells that are empty, NaN, nan or n/a are missing and come out as NaN. Times in ms come out in s:
+// those of a column called so (time_ms), and of one called time or t that grows by 0.5 or more a
+// row, as nothing is recorded so rarely.
 #pragma once
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "datasets/files/error.h"
@@ -47,7 +50,11 @@ struct TableReadOptions {
 Result<NumericTable> ReadNumericTable(const std::string& path, TableFormat format,
                                       const TableReadOptions& options = {});
 
-// The column that holds the time: `wanted` when given, otherwise time, t, time_s, ...; -1: none.
+// Its letters and digits, small: "Force (N)" is "forcen".
+std::string PlainName(std::string_view name);
+
+// The column that holds the time: `wanted` when given, otherwise time, t, time_s, "Time (ms)", ...;
+// -1: none.
 int FindTimeColumn(const std::vector<std::string>& names, const std::string& wanted);
 
 // Steps of a time column in s, or an Error where it does not ascend in even steps (1 %).

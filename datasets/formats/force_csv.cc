@@ -2,80 +2,66 @@
 #include "datasets/formats/force_csv.h"
 
 #include <algorithm>
-#include <iterator>
-#include <string_view>
+#include <cmath>
+#include <numeric>
 
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/input_file.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
+#include "datasets/files/numeric_table.h"
 
 namespace pushid {
 namespace {
 
 constexpr char kHeader[] = "frame,fx,fy,ftheta,fphi";
-constexpr const char* kPushColumns[] = {"frame", "fx", "fy", "ftheta", "fphi"};
-constexpr std::size_t kNumColumns = 5, kWithoutTorques = 3;
+constexpr int kNumColumns = 5, kWithoutTorques = 3, kMinSamples = 3;
+constexpr int kFewestAtLimit = 5;  // samples
 
-// How many of the columns of a push the header names; 0 where it is another.
-std::size_t ColumnsOf(std::string_view line) {
-  const std::vector<std::string_view> cells = CellsOf(line, ',');
-  const bool named = cells.size() <= kNumColumns &&
-                     std::equal(cells.begin(), cells.end(), std::begin(kPushColumns));
-  return named && (cells.size() == kNumColumns || cells.size() == kWithoutTorques) ? cells.size()
-                                                                                   : 0;
+struct NamedColumn {
+  const char *name, *with_unit;  // as PlainName has them
+};
+constexpr NamedColumn kPushColumns[] = {
+    {"frame", "frame"}, {"fx", "fxn"}, {"fy", "fyn"}, {"ftheta", "fthetanm"}, {"fphi", "fphinm"}};
+constexpr NamedColumn kAxisColumns[] = {{"force", "forcen"}};
+constexpr NamedColumn kVectorColumns[] = {{"fx", "fxn"}, {"fy", "fyn"}, {"fz", "fzn"}};
+
+// Whether these, in this order, are what the names from `first` on say.
+template <std::size_t N>
+bool AreCalled(const std::vector<std::string>& names, const NamedColumn (&columns)[N],
+               std::size_t first, std::size_t count = N) {
+  return names.size() == first + count &&
+         std::equal(names.begin() + static_cast<std::ptrdiff_t>(first), names.end(), columns,
+                    [](const std::string& name, const NamedColumn& column) {
+                      const std::string plain = PlainName(name);
+                      return plain == column.name || plain == column.with_unit;
+                    });
 }
 
-MaybeError ParsePushRow(const LineReader& reader, std::string_view line, std::size_t columns,
-                        std::int64_t expected_frame, Eigen::Vector4d* force) {
-  const std::vector<std::string_view> cells = CellsOf(line, ',');
-  for (std::size_t i = 0; i < columns; ++i) {
-    if (i == cells.size()) {
-      return reader.ErrorHere("the row has " + std::to_string(i) + " values, not " +
-                              std::to_string(columns) + " (" + kHeader + ")");
+// A table without gaps, and its lines. columns: IsPush or IsSensor; expected: what else to say.
+Result<NumericTable> ReadTable(const std::string& path,
+                               bool (*columns)(const std::vector<std::string>& names),
+                               const std::string& expected) {
+  TableReadOptions options;
+  options.keep_lines = true;
+  options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
+    if (!columns(names)) {
+      return Error{"the header is " + Quoted(ListOfNames(names)) + ", " + expected +
+                       (IsSensor(names) ? "; pushid-push --sensor makes such a push of it" : ""),
+                   path};
     }
-    const std::string_view field = cells[i];
-    if (i > 0) {
-      if (!ParseDouble(field, &(*force)[i - 1])) {
-        return reader.ErrorHere(std::string(kPushColumns[i]) + ": " + NumberProblem(field));
-      }
-      continue;
-    }
-    std::int64_t frame = 0;
-    if (!ParseInteger(field, &frame)) {
-      return reader.ErrorHere("frame: " + Quoted(field) + " is not a whole number");
-    }
-    if (frame != expected_frame) {
-      return reader.ErrorHere("frame is " + std::to_string(frame) + " where " +
-                              std::to_string(expected_frame) +
-                              " was expected; rows must count 0, 1, 2, ... without gaps (a late "
-                              "push is given by start_frame in the manifest)");
+    std::vector<int> all(names.size());
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  };
+  Result<NumericTable> table = ReadNumericTable(path, TableFormat::kCsv, options);
+  for (std::size_t row = 0; table.ok() && row < table.value().lines.size(); ++row) {
+    for (std::size_t i = 0; i < table.value().names.size(); ++i) {
+      if (std::isfinite(table.value().data[i][row])) continue;
+      return Error{table.value().names[i] + " is missing; fill the gap or cut the record there",
+                   path, table.value().lines[row]};
     }
   }
-  if (cells.size() > columns) {
-    return reader.ErrorHere("the row has more than " + std::to_string(columns) + " values (" +
-                            kHeader + ")");
-  }
-  return std::nullopt;
-}
-
-constexpr int kMinSamples = 3;
-
-MaybeError ParseSensorRow(const LineReader& reader, std::string_view line,
-                          const std::vector<std::string>& columns, std::vector<double>* row) {
-  const std::vector<std::string_view> fields = CellsOf(line, ',');
-  if (fields.size() != columns.size()) {
-    return reader.ErrorHere("the row has " + std::to_string(fields.size()) + " values, not " +
-                            std::to_string(columns.size()));
-  }
-  for (size_t i = 0; i < columns.size(); ++i) {
-    if (fields[i].empty()) {
-      return reader.ErrorHere(columns[i] + " is missing; fill the gap or cut the record there");
-    }
-    if (!ParseDouble(fields[i], &(*row)[i])) {
-      return reader.ErrorHere(columns[i] + ": " + NumberProblem(fields[i]));
-    }
-  }
-  return {};
+  return table;
 }
 
 // The first pause that is no sampling interval any more. `lines` holds each sample's line.
@@ -101,34 +87,33 @@ MaybeError FindGap(const SensorRecord& record, const std::vector<int>& lines) {
 
 }  // namespace
 
+bool IsPush(const std::vector<std::string>& names) {
+  return AreCalled(names, kPushColumns, 0) || AreCalled(names, kPushColumns, 0, kWithoutTorques);
+}
+
+bool IsSensor(const std::vector<std::string>& names) {
+  return FindTimeColumn(names, "") == 0 &&
+         (AreCalled(names, kAxisColumns, 1) || AreCalled(names, kVectorColumns, 1));
+}
+
 Result<PushRows> ReadPushCsv(const std::string& path) {
-  LineReader reader;
-  if (MaybeError failed = reader.Open(path)) return *std::move(failed);
-  std::string_view line;
-  if (!reader.NextNonBlank(&line)) {
-    if (reader.error()) return *reader.error();
-    return Error{std::string("the file is empty; a push starts with the line ") + kHeader, path, 0};
-  }
-  const std::size_t columns = ColumnsOf(line);
-  if (columns == 0) {
-    return reader.ErrorHere("the header is " + Quoted(line) + ", not " + kHeader +
-                            " (or frame,fx,fy of a push at the manifest's push_height_m)");
-  }
+  const Result<NumericTable> read =
+      ReadTable(path, &IsPush,
+                std::string("not ") + kHeader +
+                    " (or frame,fx,fy of a push at the manifest's push_height_m)");
+  if (!read.ok()) return read.error();
+  const NumericTable& table = read.value();
   PushRows push;
-  push.has_torques = columns == kNumColumns;
-  std::vector<Eigen::Vector4d>& force = push.force;
-  while (reader.NextNonBlank(&line)) {
-    Eigen::Vector4d row = Eigen::Vector4d::Zero();
-    if (MaybeError failed =
-            ParsePushRow(reader, line, columns, static_cast<std::int64_t>(force.size()), &row)) {
-      return *std::move(failed);
+  push.has_torques = table.names.size() == kNumColumns;
+  for (int row = 0; row < table.num_rows(); ++row) {
+    if (table.data[0][row] != row) {
+      return Error{"frame is " + Rounded(table.data[0][row]) + " where " + std::to_string(row) +
+                       " was expected; rows must count 0, 1, 2, ... without gaps (a late push is "
+                       "given by start_frame in the manifest)",
+                   path, table.lines[row]};
     }
-    force.push_back(row);
-  }
-  if (reader.error()) return *reader.error();
-  if (force.empty()) {
-    return reader.ErrorHere(
-        "the push has no rows; leave push_csv out of the manifest for a recording without a push");
+    Eigen::Vector4d& force = push.force.emplace_back(Eigen::Vector4d::Zero());
+    for (std::size_t i = 1; i < table.names.size(); ++i) force[i - 1] = table.data[i][row];
   }
   return push;
 }
@@ -151,45 +136,59 @@ MaybeError WritePushCsv(const std::string& path, const std::vector<Eigen::Vector
 }
 
 Result<SensorRecord> ReadSensorCsv(const std::string& path) {
-  LineReader reader;
-  if (MaybeError failed = reader.Open(path)) return *std::move(failed);
-  std::string_view line;
-  if (!reader.NextNonBlank(&line)) {
-    if (reader.error()) return *reader.error();
-    return Error{"the file is empty; a sensor record starts with time,force or time,fx,fy,fz", path,
-                 0};
-  }
+  const Result<NumericTable> read = ReadTable(
+      path, &IsSensor,
+      "neither time,force nor time,fx,fy,fz (s or ms, N); select the push by --sensor_column (in a "
+      "list of sensors by \"column\", with its \"gain\" if it is not in N)");
+  if (!read.ok()) return read.error();
+  const NumericTable& table = read.value();
   SensorRecord record;
   record.file = path;
-  const std::vector<std::string_view> cells = CellsOf(line, ',');
-  const std::vector<std::string> columns(cells.begin(), cells.end());
-  record.is_vector = columns == std::vector<std::string>{"time", "fx", "fy", "fz"};
-  if (!record.is_vector && columns != std::vector<std::string>{"time", "force"}) {
-    return reader.ErrorHere("the header is " + Quoted(line) +
-                            ", neither time,force nor time,fx,fy,fz");
+  record.is_vector = table.names.size() > 2;
+  record.time_s = table.data[0];
+  for (int row = 0; row < table.num_rows(); ++row) {
+    Eigen::Vector3d& force = record.force.emplace_back(Eigen::Vector3d::Zero());
+    for (std::size_t i = 1; i < table.names.size(); ++i) force[i - 1] = table.data[i][row];
+    if (row == 0 || record.time_s[row] > record.time_s[row - 1]) continue;
+    return Error{"time " + Rounded(record.time_s[row], 9) + " s does not come after " +
+                     Rounded(record.time_s[row - 1], 9) +
+                     " s; samples must be in ascending order, each once",
+                 path, table.lines[row]};
   }
-
-  std::vector<int> lines;
-  std::vector<double> row(columns.size());
-  while (reader.NextNonBlank(&line)) {
-    if (MaybeError failed = ParseSensorRow(reader, line, columns, &row)) return *std::move(failed);
-    if (!record.time_s.empty() && row[0] <= record.time_s.back()) {
-      return reader.ErrorHere("time " + Rounded(row[0], 9) + " s does not come after " +
-                              Rounded(record.time_s.back(), 9) +
-                              " s; samples must be in ascending order, each once");
-    }
-    record.time_s.push_back(row[0]);
-    record.force.push_back(record.is_vector ? Eigen::Vector3d(row[1], row[2], row[3])
-                                            : Eigen::Vector3d(row[1], 0.0, 0.0));
-    lines.push_back(reader.line_number());
-  }
-  if (reader.error()) return *reader.error();
   if (record.num_samples() < kMinSamples) {
-    return reader.ErrorHere("the record ends after " + std::to_string(record.num_samples()) +
-                            " samples; a push needs at least " + std::to_string(kMinSamples));
+    return Error{"the record ends after " + std::to_string(record.num_samples()) +
+                     " samples; a push needs at least " + std::to_string(kMinSamples),
+                 path, table.lines.back()};
   }
-  if (MaybeError gap = FindGap(record, lines)) return *std::move(gap);
+  if (MaybeError gap = FindGap(record, table.lines)) return *std::move(gap);
   return record;
+}
+
+std::string ClippedText(const SensorRecord& record) {
+  for (int axis = 0; axis < (record.is_vector ? 3 : 1); ++axis) {
+    double limit = 0.0;
+    for (const Eigen::Vector3d& force : record.force) {
+      if (std::fabs(force[axis]) > std::fabs(limit)) limit = force[axis];
+    }
+    int run = 0, at_limit = 0, below = 0, outside = 0, changes = 0;  // runs of equal samples
+    for (std::size_t i = 1; i < record.force.size(); ++i) {
+      const double now = record.force[i][axis];
+      const bool same = now == record.force[i - 1][axis];
+      run = same ? run + 1 : 1;
+      int& longest = now == limit ? at_limit : below;
+      longest = std::max(longest, run);
+      outside += now != limit;
+      changes += now != limit && !same;
+    }
+    // A force that was computed, or held by a machine, stays the same elsewhere too.
+    const bool noisy = 2 * changes > outside;
+    if (!noisy || at_limit < std::max(kFewestAtLimit, 3 * below)) continue;
+    return record.file + ": " + std::to_string(at_limit) +
+           " samples on end read exactly the largest force, " + Rounded(limit, 3) +
+           " N: the sensor's range was exceeded, and the push was larger; leave the recording out "
+           "(--leave_out)";
+  }
+  return "";
 }
 
 }  // namespace pushid

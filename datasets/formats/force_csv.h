@@ -11,6 +11,9 @@
 // 2, ... without gaps. ftheta and fphi are the force's torques about the ankles; 0 is a push at the
 // ankles. A file without these two columns has the forces of a push at a height that the manifest
 // gives (push_height_m), or at the hip.
+//
+// Names in any case, in quotes, with their unit ("Force (N)"), separated by commas, semicolons or
+// tabs, are the same names.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,6 +30,10 @@ struct PushRows {
   bool has_torques = true;  // otherwise the last two are 0
 };
 
+// Whether a table's columns are those of a push, or of a sensor's record.
+bool IsPush(const std::vector<std::string>& names);
+bool IsSensor(const std::vector<std::string>& names);
+
 // Errors name the line: wrong header, a row number out of sequence, too few or many fields, a field
 // that is not a finite number, no rows at all.
 Result<PushRows> ReadPushCsv(const std::string& path);
@@ -40,7 +47,7 @@ MaybeError WritePushCsv(const std::string& path, const std::vector<Eigen::Vector
 //   0.000,0.0                  0.000,0.0,0.0,0.0
 //   0.001,1.7                  0.001,1.7,-0.2,0.0
 //
-// time in s on the sensor's clock, ascending, evenly spaced or nearly so; force in N along the
+// time in s (or ms, numeric_table.h) on the sensor's clock, ascending, evenly spaced or nearly so; force in N along the
 // sensor's axis, or as a vector in the project's axes (x forward, y left, z up).
 struct SensorRecord {
   std::vector<double> time_s;
@@ -62,5 +69,9 @@ inline constexpr double kMaxSensorPause = 5.0;
 // Errors name file and line: another header, too few or many values, empty fields, NaN and other
 // text, times that do not ascend, gaps, fewer than three samples.
 Result<SensorRecord> ReadSensorCsv(const std::string& path);
+
+// A sentence where a sensor's range was exceeded: it stays exactly at its largest value, and only
+// there; otherwise nothing.
+std::string ClippedText(const SensorRecord& record);
 
 }  // namespace pushid

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 #include <unordered_map>
+#include <utility>
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
@@ -15,10 +16,13 @@
 namespace pushid {
 namespace {
 
-// "hip_x" -> "hip_"; empty when the name does not end in the axis.
-std::string Stem(const std::string& name, char axis) {
-  if (name.size() < 2 || (name.back() | 0x20) != axis) return "";
-  return name.substr(0, name.size() - 1);
+// The ends of the names of a point's three columns, by the first of them; empty: it is none.
+// OpenSim flattens points to LASI_1, LASI_2 and LASI_3.
+std::string AxesOf(const std::string& name) {
+  return EndsWith(name, "x")    ? "xyz"
+         : EndsWith(name, "X")  ? "XYZ"
+         : EndsWith(name, "_1") ? "123"
+                                : "";
 }
 
 std::string WithoutSeparator(std::string stem) {
@@ -167,7 +171,8 @@ class TrcReader {
       if (keys[i] == "Units") motion_.unit_text = std::string(fields[i]);
     }
     if (!(motion_.rate_hz > 0.0 && motion_.rate_hz <= 1e5)) {
-      return reader_.ErrorHere("DataRate must be a number of frames per second above 0");
+      return reader_.ErrorHere(
+          "DataRate must be a number of frames per second above 0; tabs separate cells");
     }
     if (!(frames >= 1.0 && frames <= 2e9) || !(markers >= 1.0 && markers <= kMostMarkers)) {
       return reader_.ErrorHere("NumFrames and NumMarkers must be 1 or more");
@@ -207,11 +212,9 @@ class TrcReader {
         return reader_.ErrorHere("wrong frame count: NumFrames is " + std::to_string(num_frames_) +
                                  ", but here is one row more");
       }
-      if (MaybeError failed = ReadRow(line)) return failed;
-      NoteMissing(line);
+      if (MaybeError failed = ReadRow(line, rows)) return failed;
     }
     if (reader_.error()) return reader_.error();
-    if (rows < num_frames_ && missing_) return missing_;
     if (rows < num_frames_) {
       return reader_.ErrorHere("wrong frame count: NumFrames is " + std::to_string(num_frames_) +
                                ", but the file ends after " + std::to_string(rows) +
@@ -220,17 +223,25 @@ class TrcReader {
     return CheckRate(rows);
   }
 
-  // Remembers where Frame# first leaves numbers out.
-  void NoteMissing(std::string_view line) {
-    const long frame =
-        std::strtol(std::string(line.substr(0, line.find('\t'))).c_str(), nullptr, 10);
-    // Numbers as text has them: a sum may overflow.
-    const bool gap = last_frame_ > 0 && frame > last_frame_ && frame - last_frame_ > 1;
-    if (!missing_ && gap) {
-      missing_ = reader_.ErrorHere("rows are missing before this one: Frame# goes from " +
-                                   std::to_string(last_frame_) + " to " + std::to_string(frame));
+  // Frame# grows by 1, or by what it grows in the first row of a file with every n-th frame, which
+  // is one row by Time; Time by a row, rounded to a millisecond.
+  MaybeError CheckSequence(double frame, double time, std::int64_t rows) {
+    const double from = std::exchange(last_frame_, frame),
+                 since = std::exchange(last_time_s_, time);
+    const double frames = frame - from, seconds = time - since, row_s = 1.0 / motion_.rate_hz;
+    if (rows == 1) motion_.first_time_s = time;
+    if (rows == 2) {
+      usual_s_ = std::max(seconds, row_s);
+      if (seconds > 0.0 && seconds < 1.5 * row_s && frames >= 0.0) usual_frames_ = frames;
     }
-    last_frame_ = frame;
+    if (rows < 2) return std::nullopt;
+    const bool jumps = frames != usual_frames_;
+    if (!jumps && seconds >= 0.0 && seconds <= 1.5 * usual_s_ + 1.1e-3) return std::nullopt;
+    const bool back = jumps ? frames <= 0.0 : seconds < 0.0;
+    return reader_.ErrorHere(
+        (back ? "rows are in another order here: " : "rows are missing before this one: ") +
+        (jumps ? "Frame# goes from " + Rounded(from, 9) + " to " + Rounded(frame, 9)
+               : "Time goes from " + Rounded(since, 9) + " to " + Rounded(time, 9) + " s"));
   }
 
   // Times may be rounded to a millisecond.
@@ -257,7 +268,7 @@ class TrcReader {
         "row with a newline if it only leaves out markers not seen");
   }
 
-  MaybeError ReadRow(std::string_view line) {
+  MaybeError ReadRow(std::string_view line, std::int64_t rows) {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     const std::size_t expected = row_.size() + 2;
     if (!reader_.ended_in_newline()) {
@@ -266,17 +277,16 @@ class TrcReader {
     const std::vector<std::string_view> fields = TabFields(line);
     if (fields.size() < 2 || fields.size() > expected) {
       return reader_.ErrorHere("the row has " + std::to_string(fields.size()) + " cells, not " +
-                               std::to_string(expected));
+                               std::to_string(expected) + ", separated by tabs");
     }
-    double number = 0.0;
+    double numbers[2] = {0.0, 0.0};
     for (int i = 0; i < 2; ++i) {
-      if (!ParseDouble(fields[i], &number)) {
+      if (!ParseDouble(fields[i], &numbers[i])) {
         return reader_.ErrorHere(std::string(i == 0 ? "Frame#: " : "Time: ") +
                                  NumberProblem(fields[i]));
       }
     }
-    if (std::isnan(last_time_s_)) motion_.first_time_s = number;
-    last_time_s_ = number;
+    if (MaybeError failed = CheckSequence(numbers[0], numbers[1], rows)) return failed;
     for (std::size_t i = 0; i < row_.size(); ++i) {
       const std::string_view cell = i + 2 < fields.size() ? fields[i + 2] : "";
       if (cell.empty() || EqualsIgnoringCase(cell, "nan")) {
@@ -311,10 +321,9 @@ class TrcReader {
   LineReader reader_;
   PointMotion motion_;
   std::int64_t num_frames_ = 0, num_markers_ = 0;
-  long last_frame_ = 0;
-  MaybeError missing_;
-  double last_time_s_ = std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> row_;  // x, y, z of every marker
+  double last_frame_ = 0.0, last_time_s_ = 0.0;
+  double usual_frames_ = 1.0, usual_s_ = 0.0;  // from row to row
+  std::vector<double> row_;                    // x, y, z of every marker
 };
 
 }  // namespace
@@ -341,12 +350,11 @@ std::vector<TablePoint> PointsOf(const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < names.size(); ++i) index.emplace(names[i], static_cast<int>(i));
   std::vector<TablePoint> points;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::string stem = Stem(names[i], 'x');
-    if (stem.empty()) continue;
-    const bool upper = names[i].back() == 'X';
-    const auto y = index.find(stem + (upper ? 'Y' : 'y'));
-    const auto z = index.find(stem + (upper ? 'Z' : 'z'));
+    const std::string axes = AxesOf(names[i]), stem = names[i].substr(0, names[i].size() - 1);
+    if (axes.empty() || stem.empty()) continue;
+    const auto y = index.find(stem + axes[1]), z = index.find(stem + axes[2]);
     if (y == index.end() || z == index.end()) continue;
+    if (axes == "123" && index.count(stem + "4") > 0) continue;
     TablePoint point;
     point.name = WithoutSeparator(stem);
     if (point.name.empty()) continue;
@@ -364,6 +372,22 @@ bool IsForceColumn(const std::string& name) {
   return end < 3 || name[end - 3] != '_' || name[end - 2] != 'p';
 }
 
+namespace {
+
+// "left_v" or "left_f", and beside it "left_p" and "left_m": a platform's force, its centre of
+// pressure and its moments.
+bool IsOfPlatform(const std::string& name, const std::vector<std::string>& names) {
+  const std::string prefix = name.substr(0, name.size() - 1);
+  if (!prefix.empty() && prefix.back() != '_') return false;
+  const auto there = [&](char what) {
+    return std::find(names.begin(), names.end(), prefix + what) != names.end();
+  };
+  const bool force = there('v') || there('f');
+  return force && Holds("vfpm", name.substr(prefix.size()));
+}
+
+}  // namespace
+
 PointMotion WithoutForces(const PointMotion& motion) {
   PointMotion points = motion;
   points.names.clear();
@@ -372,6 +396,7 @@ PointMotion WithoutForces(const PointMotion& motion) {
   for (std::size_t i = 0; i < motion.names.size(); ++i) {
     const std::string& name = motion.names[i];
     if (Holds(name, "force") || Holds(name, "torque") || Holds(name, "moment")) continue;
+    if (IsOfPlatform(name, motion.names)) continue;
     points.chosen.push_back(static_cast<int>(points.names.size()));
     points.names.push_back(name);
     points.positions.push_back(motion.positions[i]);

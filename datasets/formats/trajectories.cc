@@ -109,9 +109,11 @@ struct Columns {
   int id = 0, frame = 1, time = -1, axis[3] = {2, 3, 4};
 };
 
-// Cells are separated by commas, or by white space.
+// Cells are separated by semicolons, by commas, or by white space.
 std::vector<std::string_view> CellsOfRow(std::string_view line) {
-  if (line.find(',') != std::string_view::npos) return CellsOf(line, ',');
+  for (char separator : {';', ','}) {
+    if (line.find(separator) != std::string_view::npos) return CellsOf(line, separator);
+  }
   std::vector<std::string_view> cells;
   for (auto cell = NextToken(&line); !cell.empty(); cell = NextToken(&line)) cells.push_back(cell);
   return cells;
@@ -119,11 +121,14 @@ std::vector<std::string_view> CellsOfRow(std::string_view line) {
 
 // The columns that a header names, whatever unit it gives them ("x/cm"); none where it lacks one.
 std::optional<Columns> NamedColumns(std::string_view line) {
-  if (!std::isalpha(static_cast<unsigned char>(line.front()))) return std::nullopt;
+  if (line.front() != '"' && !std::isalpha(static_cast<unsigned char>(line.front()))) {
+    return std::nullopt;
+  }
   const std::vector<std::string_view> cells = CellsOfRow(line);
   const auto at = [&cells](std::string_view name) {
     for (size_t i = 0; i < cells.size(); ++i) {
-      if (cells[i].substr(0, cells[i].find_first_of("/[(")) == name) return static_cast<int>(i);
+      const std::string_view called = cells[i].substr(0, cells[i].find_first_of("/[("));
+      if (PlainName(called) == name) return static_cast<int>(i);
     }
     return -1;
   };

@@ -83,7 +83,7 @@ std::string FrameRateProblem(double fps) {
 }
 
 double WholeFrameRate(double fps) {
-  constexpr double kRounding = 1e-3;
+  constexpr double kRounding = 1.1e-3;  // a frame time of 0.0333 s is that of 30.03
   constexpr double kVideo = 1.0 / 1.001;
   const double whole = std::round(fps);
   if (!(whole > 0.0) || std::fabs(fps / whole - 1.0) > kRounding) return fps;

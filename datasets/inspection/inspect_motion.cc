@@ -342,11 +342,13 @@ class MotionInspector {
     if (last <= first || !found_.hip[last].allFinite()) return;
     const double speed =
         (found_.hip[last] - found_.hip[first]).norm() * motion_.rate_hz / (last - first);
-    if (found_.onset_frame >= 0 && found_.onset_frame <= last && PushedFromRest(first)) {
-      found_.Fact("start", "the push begins at the first frame");
+    const bool still = speed <= kStaticSpeed;
+    const int soon = still ? last : last + window;
+    if (found_.onset_frame >= 0 && found_.onset_frame <= soon && PushedFromRest(first)) {
+      found_.Fact("start", "at rest, and pushed within the first " +
+                               Seconds(found_.onset_frame / motion_.rate_hz));
       return;
     }
-    const bool still = speed <= kStaticSpeed;
     found_.Fact("start",
                 std::string(still ? "static" : "moving") + " (hip " + Rounded(speed, 2) + " m/s)");
     if (!still) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -206,6 +207,17 @@ void InspectCrowd(const PointMotion& motion, Inspection* found) {
   found->Fact("frames", std::to_string(motion.num_frames()) + " at " + Rounded(motion.rate_hz) +
                             " per second, from the file's frame " +
                             std::to_string(FirstFrame(motion)));
+  std::vector<std::string> gaps;
+  for (std::size_t i = 0; i < motion.positions.size(); ++i) {
+    const std::vector<Eigen::Vector3d>& track = motion.positions[i];
+    const auto seen = [](const Eigen::Vector3d& place) { return place.allFinite(); };
+    const auto first = std::find_if(track.begin(), track.end(), seen);
+    const auto end = std::find_if(track.rbegin(), track.rend(), seen).base();
+    const auto missing = first < end ? std::count_if(first, end, std::not_fn(seen)) : 0;
+    if (missing > 0) gaps.push_back(motion.names[motion.chosen[i]] + " " + std::to_string(missing));
+  }
+  if (!gaps.empty())
+    found->Warn("frames not seen between a person's first and last: " + ListOfNames(gaps));
   const std::int64_t frame = FullestFrame(motion);
   const Result<std::vector<CrowdPlace>> places = PlacesAt(motion, frame);
   if (!places.ok()) return;
@@ -384,6 +396,9 @@ MaybeError LookAtSensor(Inspection* found) {
   found->Fact("samples", std::to_string(time.size()) + " at " + Rounded(rate, 5) +
                              " per second, from " + Rounded(time.front()) + " s");
   SubtractRest(&record.value());
+  if (const std::string clipped = ClippedText(record.value()); !clipped.empty()) {
+    found->Warn(clipped);
+  }
   if (const Eigen::Vector3d& rest = record.value().subtracted; rest.norm() > 0.0) {
     found->Fact("at rest", Rounded(record.value().is_vector ? rest.norm() : rest.x(), 3) +
                                " N before the pull, subtracted below and by pushid-push "
@@ -421,6 +436,11 @@ MaybeError LookAtTable(const MotionFormatRow& format, const ColumnMapping& mappi
   const Result<PointMotion> motion = ReadPointMotion(found->path, format.value, options);
   PointMotion points = motion.ok() ? WithoutForces(motion.value()) : PointMotion();
   points.rate_hz = rate;
+  if (motion.ok() && points.names.size() < motion.value().names.size()) {
+    found->Fact("of platforms",
+                "forces, moments or centres of pressure, which \"force_plates\" of "
+                "a manifest reads");
+  }
   if (!points.names.empty()) {
     LookAtPoints(points, mapping, found);
   } else {
@@ -463,8 +483,10 @@ MaybeError Look(const ColumnMapping& mapping, Inspection* found) {
     return std::nullopt;
   }
   const std::string first = *format == MotionFormat::kCsv ? FirstLine(path) : "";
-  if (first.rfind("frame,fx,fy", 0) == 0) return LookAtPush(found);
-  if (first == "time,force" || first == "time,fx,fy,fz") return LookAtSensor(found);
+  std::vector<std::string> names;
+  for (std::string_view cell : CellsOf(first, SeparatorOf(first))) names.emplace_back(cell);
+  if (IsPush(names)) return LookAtPush(found);
+  if (IsSensor(names)) return LookAtSensor(found);
   return LookAtTable(RowOf(*format), mapping, found);
 }
 

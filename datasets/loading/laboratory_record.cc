@@ -11,6 +11,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/loading/ground_markers.h"
 #include "datasets/loading/motion_tracks.h"
 #include "datasets/sensors/force_sensors.h"
 #include "models/decompositions.h"
@@ -124,145 +125,6 @@ MaybeError CheckAtRest(const GroundTracks& tracks, bool displacement, double sta
 }
 
 using Track = std::vector<Eigen::Vector3d>;
-
-constexpr double kGroundGap = 0.1;      // s, of a marker: longer ones are not filled
-constexpr double kMarkersApart = 0.01;  // m, rms about a line: less tells no tilt about it
-
-Eigen::Matrix3Xd AboutMiddle(const std::vector<Eigen::Vector3d>& marks, Eigen::Vector3d* middle) {
-  Eigen::Matrix3Xd about(3, marks.size());
-  for (size_t i = 0; i < marks.size(); ++i) about.col(i) = marks[i];
-  *middle = about.rowwise().mean();
-  return about.colwise() - *middle;
-}
-
-// Marks on one line, or one named twice, leave the tilt about it open.
-MaybeError CheckApart(const std::vector<Eigen::Vector3d>& marks, const ManifestGround& ground,
-                      const std::string& path) {
-  Eigen::Vector3d middle;
-  const Eigen::VectorXd spread = DecomposeRight(AboutMiddle(marks, &middle)).values;
-  const double off = spread[1] / std::sqrt(static_cast<double>(marks.size()));
-  if (off >= kMarkersApart) return std::nullopt;
-  return Error{"the markers of the ground (" + ListOfNames(ground.markers) +
-                   ") lie on a line within " + Rounded(1000.0 * off, 2) +
-                   " mm, which leaves the tilt about it open; name one beside it, " +
-                   Rounded(1000.0 * kMarkersApart) + " mm or more",
-               path};
-}
-
-// The turn that takes the marks of frame 0 to those of a frame best (Kabsch 1976), and where it and
-// the shift of their middle take the point `under` the person, about which the ground tilts.
-void AddRigid(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to,
-              const Eigen::Vector3d& under, GroundTracks* tracks) {
-  Eigen::Vector3d a, b;
-  const Eigen::Matrix3Xd before = AboutMiddle(from, &a), now = AboutMiddle(to, &b);
-  const Eigen::Matrix3d turn = NearestRotation(now * before.transpose());
-  const Eigen::Vector3d normal = turn.col(2);  // where the ground's z points
-  tracks->shift.push_back(b + turn * (under - a) - under);
-  tracks->tilt.emplace_back(std::asin(std::clamp(normal[0], -1.0, 1.0)),
-                            std::atan2(-normal[1], normal[2]), 0.0);
-}
-
-// A marker that slides, falls off or was exchanged for another moves the ground as it never moved.
-MaybeError CheckRigid(const std::vector<Track>& marks, const ManifestGround& ground,
-                      const std::string& path) {
-  for (size_t a = 0; a < marks.size(); ++a) {
-    for (size_t b = 0; b < a; ++b) {
-      double mean = 0.0, square = 0.0, farthest = 0.0;
-      size_t at = 0;
-      const auto frames = static_cast<double>(marks[a].size());
-      for (size_t t = 0; t < marks[a].size(); ++t) mean += (marks[a][t] - marks[b][t]).norm();
-      mean /= frames;
-      for (size_t t = 0; t < marks[a].size(); ++t) {
-        const double off = std::abs((marks[a][t] - marks[b][t]).norm() - mean);
-        square += off * off / frames;
-        if (off > farthest) farthest = off, at = t;
-      }
-      if (square <= kRigidMarkers * kRigidMarkers) continue;
-      return Error{"the markers " + ground.markers[b] + " and " + ground.markers[a] +
-                       " of the ground are not rigid: their distance scatters by " +
-                       Rounded(1000.0 * std::sqrt(square), 2) + " mm about " +
-                       Rounded(1000.0 * mean, 3) + " mm, most at frame " + std::to_string(at) +
-                       ", and may by " + Rounded(1000.0 * kRigidMarkers) +
-                       " mm; leave out the one that moves on the platform",
-                   path};
-    }
-  }
-  return std::nullopt;
-}
-
-// Short gaps are filled, and told; longer ones are errors.
-MaybeError CloseGaps(const ManifestRecording& entry, const std::string& path, double rate,
-                     std::vector<Track>* marks, Warnings* warnings) {
-  for (size_t m = 0; m < marks->size(); ++m) {
-    const std::string name = "the marker " + entry.ground.markers[m] + " of the ground";
-    std::vector<double> weight((*marks)[m].size(), 1.0);
-    const GapCount count =
-        FillGaps(static_cast<int>(std::lround(kGroundGap * rate)), &(*marks)[m], &weight);
-    const auto gap = std::find(weight.begin(), weight.end(), 0.0);
-    if (gap != weight.end()) {
-      return Error{name + " is not seen at frame " + std::to_string(gap - weight.begin()) +
-                       " for longer than " + Rounded(kGroundGap) +
-                       " s; fill the gap, or leave the marker out",
-                   path};
-    }
-    if (count.gaps == 0 || warnings == nullptr) continue;
-    const std::string told = name + " has " + std::to_string(count.gaps) +
-                             (count.gaps == 1 ? " gap, " : " gaps, ") +
-                             std::to_string(count.filled_frames) + " frames in all, filled by " +
-                             (count.gaps == 1 ? "a cubic" : "cubics");
-    warnings->emplace_back("recording " + Quoted(entry.id) + ": " + told, entry.id, told);
-  }
-  return std::nullopt;
-}
-
-Result<std::vector<Track>> ReadMarkers(const ManifestRecording& entry, const std::string& path,
-                                       double* first_s) {
-  PointReadOptions options;
-  options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
-    std::vector<int> chosen;
-    for (const std::string& marker : entry.ground.markers) {
-      const auto found = std::find(names.begin(), names.end(), marker);
-      if (found == names.end()) return UnknownNameError(path, "marker", names, marker);
-      chosen.push_back(static_cast<int>(found - names.begin()));
-    }
-    return chosen;
-  };
-  const Result<PointMotion> read = ReadPointMotion(path, entry.motion_format, options);
-  if (!read.ok()) return read.error();
-  *first_s = read.value().first_time_s;
-  return read.value().positions;
-}
-
-// The ground of the markers that the entry names, in the first person's file: the rigid motion of
-// what is under that person.
-Result<GroundTracks> GroundOfMarkers(const ManifestRecording& entry, const Recording& recording,
-                                     const GroundReading& reading, Warnings* warnings) {
-  const std::string path = ResolvePath(entry.manifest, entry.motion[0]);
-  GroundTracks tracks{path, reading.file_fps, 0.0, {}, {}, {}};
-  Result<std::vector<Track>> read = ReadMarkers(entry, path, &tracks.first_s);
-  if (!read.ok()) return read.error();
-  std::vector<Track>& marks = read.value();
-  if (MaybeError failed = CloseGaps(entry, path, tracks.rate_hz, &marks, warnings)) {
-    return *std::move(failed);
-  }
-  const RecordedPerson& person = recording.people[0];
-  const Eigen::Matrix3d axes = AxesRotation(person.file_up, person.file_forward).value();
-  for (Track& mark : marks) {
-    for (Eigen::Vector3d& v : mark) v = reading.metres_per_unit * (axes * v);
-  }
-  if (MaybeError failed = CheckRigid(marks, entry.ground, path)) return *std::move(failed);
-  const auto at = [&](int frame) {
-    std::vector<Eigen::Vector3d> now;
-    for (const Track& mark : marks) now.push_back(mark[frame]);
-    return now;
-  };
-  const int frames = static_cast<int>(marks[0].size());
-  const int first = std::clamp(entry.first_frame, 0, frames - 1);
-  if (MaybeError failed = CheckApart(at(first), entry.ground, path)) return *std::move(failed);
-  const Eigen::Vector3d under = 0.5 * (person.left_ankle[0] + person.right_ankle[0]);
-  for (int t = 0; t < frames; ++t) AddRigid(at(first), at(t), under, &tracks);
-  return tracks;
-}
 
 }  // namespace
 
@@ -427,16 +289,19 @@ Result<double> PlatesStart(const PlateTracks& tracks, const ManifestPlates& plat
   return start;
 }
 
-// Samples at the frames, from the tracks' time `start` on.
-std::vector<PlateSample> SampledAt(const PlateTracks& tracks, double start, double fps,
-                                   int frames) {
+// Samples at the frames, from the tracks' time `start` on; spread: how far a filter spreads what
+// stands in for a centre that is not known, in samples.
+std::vector<PlateSample> SampledAt(const PlateTracks& tracks, double start, double fps, int frames,
+                                   double spread) {
   std::vector<PlateSample> samples;
   for (int t = 0; t < frames; ++t) {
     const double at = (start + t / fps - tracks.first_s) * tracks.rate_hz;
     const Eigen::Vector3d moment = ValueBetween(tracks.moment, at);
     PlateSample sample;
     sample.force = ValueBetween(tracks.force, at);
-    if (moment.z() >= kPressed) {
+    const auto near = std::lower_bound(tracks.unknown.begin(), tracks.unknown.end(), at - spread);
+    const bool known = near == tracks.unknown.end() || *near > at + spread;
+    if (moment.z() >= kPressed && known) {
       sample.centre = {moment.x() / moment.z(), moment.y() / moment.z(), 0.0};
       sample.weight = 1.0;
     }
@@ -587,6 +452,29 @@ Result<PlateTracks> PlatesOfC3d(const std::string& path, const ManifestPlates& p
   return tracks;
 }
 
+// Programs give no centre below a force of theirs, of which one that stands in is near enough.
+constexpr double kLoaded = 30.0;       // N
+constexpr double kNearOrigin = 0.005;  // m: there a centre may be zero
+
+// Where the platform is pressed and its centre is not known, the one known before stands in, or the
+// first; NaN where none is. The samples where this is so under load.
+std::vector<double> FillCentres(const Track& force, Track* centre) {
+  const auto pressed = [&](size_t i) { return force[i].z() >= kPressed; };
+  const auto known = [&](size_t i) { return SeenPosition((*centre)[i]).allFinite(); };
+  size_t last = 0;
+  while (last + 1 < force.size() && !(pressed(last) && known(last))) ++last;
+  std::vector<double> unknown;
+  for (size_t i = 0; i < force.size(); ++i) {
+    if (!pressed(i)) continue;
+    if (known(i)) last = i;
+    const Eigen::Vector3d stands_in = SeenPosition((*centre)[last]);
+    if (known(i) || ((*centre)[i].isZero(0.0) && stands_in.norm() < kNearOrigin)) continue;
+    (*centre)[i] = stands_in;
+    if (force[i].z() >= kLoaded) unknown.push_back(static_cast<double>(i));
+  }
+  return unknown;
+}
+
 Result<PlateTracks> PlatesOfTable(const std::string& path, const ManifestPlates& plates,
                                   const Eigen::Matrix3d& axes) {
   Eigen::Index up;
@@ -624,22 +512,40 @@ Result<PlateTracks> PlatesOfTable(const std::string& path, const ManifestPlates&
     const bool by_moments = all[plate].Has(PlateColumns::kMoments, 3);
     // Files hold the force on the person or on the platform, which can only be pressed.
     double vertical = 0.0;
-    for (int row = 0; by_moments && row < table.num_rows(); ++row) {
-      vertical += at(plate, 0, row).z();
-    }
+    for (int row = 0; row < table.num_rows(); ++row) vertical += at(plate, 0, row).z();
     const double sign = vertical < 0.0 ? -1.0 : 1.0;
+    const std::string whose = path + ": platform " + std::to_string(plate + 1);
+    if (sign < 0.0 && !by_moments) {
+      tracks.warnings.push_back(whose +
+                                " is pulled by the sign of its force, which is taken as that on "
+                                "the platform; is \"up\" right?");
+    }
+    Track force, centre;
     for (int row = 0; row < table.num_rows(); ++row) {
-      const Eigen::Vector3d force = sign * at(plate, 0, row);
-      if (!force.allFinite()) {
+      force.push_back(sign * at(plate, 0, row));
+      if (!force.back().allFinite()) {
         return Error{"a force of the platform is missing; fill the gap", path,
                      table.lines[static_cast<size_t>(row)]};
       }
-      tracks.Add(static_cast<size_t>(row), force,
-                 by_moments ? CentreByMoment(force, sign * at(plate, PlateColumns::kMoments, row),
-                                             axes * *plates.origin)
-                            : at(plate, 3, row));
+      centre.push_back(by_moments ? CentreByMoment(force.back(),
+                                                   sign * at(plate, PlateColumns::kMoments, row),
+                                                   axes * *plates.origin)
+                                  : at(plate, 3, row));
     }
+    const std::vector<double> unknown = FillCentres(force, &centre);
+    for (size_t i = 0; i < force.size(); ++i) tracks.Add(i, force[i], centre[i]);
+    if (unknown.empty()) continue;
+    tracks.unknown.insert(tracks.unknown.end(), unknown.begin(), unknown.end());
+    const int first = table.lines[static_cast<size_t>(unknown[0])];
+    const std::string lacks = " is pressed and has no centre of pressure (empty, nan or zeros)";
+    if (!centre[static_cast<size_t>(unknown[0])].allFinite()) {
+      return Error{"platform " + std::to_string(plate + 1) + lacks + " in any row", path, first};
+    }
+    tracks.warnings.push_back(whose + lacks + " in " + std::to_string(unknown.size()) +
+                              " rows, from line " + std::to_string(first) +
+                              " on: frames there do not count");
   }
+  std::sort(tracks.unknown.begin(), tracks.unknown.end());
   return tracks;
 }
 
@@ -666,11 +572,13 @@ MaybeError LoadPlates(const ManifestRecording& entry, const ManifestPlates& plat
   if (!start.ok()) return start.error();
   double cutoff = plates.lowpass_hz > 0.0 ? plates.lowpass_hz : 0.4 * fps;
   if (lowpass_hz > 0.0) cutoff = std::min(cutoff, lowpass_hz);
-  if (cutoff < HighestCutoff(tracks.rate_hz)) {
+  const bool filtered = cutoff < HighestCutoff(tracks.rate_hz);
+  if (filtered) {
     LowPass(cutoff, tracks.rate_hz, &tracks.force);
     LowPass(cutoff, tracks.rate_hz, &tracks.moment);
   }
-  person.plates = SampledAt(tracks, start.value(), fps, recording->num_frames());
+  person.plates = SampledAt(tracks, start.value(), fps, recording->num_frames(),
+                            filtered ? tracks.rate_hz / cutoff : 1.0);
   if (MaybeError error = CheckPlates(tracks.file, *recording, plates.person)) return error;
   // With platforms alone the feet are not seen; on ground that moves they go with it.
   const bool feet_seen = recording->ground.empty() && !entry.plates_alone;

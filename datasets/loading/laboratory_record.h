@@ -15,9 +15,10 @@
 // prefix of its own:
 //   time,fx,fy,fz,px,py             time,left_fx,...,left_py,right_fx,...,right_py
 //   time,fx,fy,fz,mx,my,mz          N m about the entry's `origin`, instead of a centre
-// N on the person (with moments also on the platform, which can only be pressed), m, in the axes
-// that are said. Forces of several platforms add up, and their
-// moments do. Low-passed without delay below half the frame rate before frames are taken.
+// N on the person or on the platform, which can only be pressed, m, in the axes that are said.
+// Forces of several platforms add up, and their moments do. Low-passed without delay below half the
+// frame rate before frames are taken. Frames near samples of a table where a platform is pressed
+// and has no centre of pressure (a gap, or zeros) have no weight.
 #pragma once
 
 #include <Eigen/Core>
@@ -107,6 +108,9 @@ struct PlateTracks {
     moment[at] += on_person.z() * Eigen::Vector3d(centre.x(), centre.y(), 1.0);
   }
   double last_s() const { return first_s + (static_cast<double>(force.size()) - 1.0) / rate_hz; }
+
+  // Samples, counted from 0, at which the centre of a platform that is pressed is not known.
+  std::vector<double> unknown{};
 };
 
 // The platforms of a manifest's entry, from the file that it names or from the motion's; a motion's

@@ -26,13 +26,8 @@ bool IsFzjSkeleton(const BvhSkeleton& skeleton) {
 // "mixamorig:Left_Foot" without what stands before a colon, in small letters and digits alone:
 // "leftfoot"; and what stands before the colon.
 std::string SimplifiedName(const std::string& name) {
-  std::string simple;
   const std::size_t prefix = name.rfind(':');
-  for (char c : prefix == std::string::npos ? name : name.substr(prefix + 1)) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) simple += c;
-  }
-  return simple;
+  return PlainName(prefix == std::string::npos ? name : name.substr(prefix + 1));
 }
 
 std::string PrefixOf(const std::string& name) {
@@ -67,9 +62,12 @@ std::vector<int> AllCalled(const Source& source, const std::string& simplified) 
 }
 
 Error SeveralError(const Source& source, const std::string& key, const std::vector<int>& found) {
-  return {key + " could be " + Quoted(source.names[found[0]]) + " or " +
-              Quoted(source.names[found[1]]) +
-              "; name it in full by \"joints\" in the manifest (each subject may have its own)",
+  const std::string &one = source.names[found[0]], &other = source.names[found[1]];
+  return {key + " could be " + Quoted(one) + " or " + Quoted(other) +
+              (one == other ? "; give its index, " + std::to_string(found[0]) + " or " +
+                                  std::to_string(found[1]) + ","
+                            : "; name it in full") +
+              " by \"joints\" in the manifest (each subject may have its own)",
           source.path};
 }
 

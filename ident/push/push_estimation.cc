@@ -430,8 +430,9 @@ Result<SensorPush> PushFromSensors(const SensorSetup& setup, const Recording& re
     }
     const Result<Push> push = PushFromSensor(record, recording, options);
     if (!push.ok()) return push.error();
-    const std::string cut_short = CutShort(record);
-    if (!cut_short.empty()) result.warnings.push_back(cut_short);
+    for (const std::string& doubt : {CutShort(record), ClippedText(record)}) {
+      if (!doubt.empty()) result.warnings.push_back(doubt);
+    }
     if (record.height_m && *record.height_m < 0.1) {
       result.warnings.push_back(sensor.file + ": " + sensor.column +
                                 " lies on the floor: it measures the ground reaction force of the "

@@ -102,5 +102,34 @@ TEST_F(PushesFromSensorsTest, OfAChannelOrAListAndWithAWrongClock) {
   EXPECT_TRUE(Refused(with({listed("rod.c3d"), "--height=1"}), {"--height", "the list"}));
   EXPECT_TRUE(Refused(with({c3d_flag, "--resample_fps=30"}), {"leave --resample_fps out"}));
 }
+// A load cell's file as its program wrote it: ms, semicolons, units in quoted heads; its range ends
+// at 60 N.
+TEST_F(PushesFromSensorsTest, OfAFileFromALoadCellWhoseRangeIsExceeded) {
+  SyntheticOptions options;
+  options.subjects = options.recordings_per_subject = 1;
+  options.frames = 90;
+  options.pushes = false;
+  const auto made = Unwrapped(MakeSyntheticRecordings(options));
+  ASSERT_FALSE(WriteSyntheticRecordings(Path("quiet"), options, made));
+  for (const double limit : {1000.0, 60.0}) {
+    std::string text = "\"Time (ms)\";\"Force (N)\"\n";
+    double impulse = 0.0;
+    for (int i = 0; i < 1400; ++i) {
+      const double pulse = i > 400 && i < 900 ? 100.0 * std::sin(M_PI * (i - 400) / 500.0) : 0.0;
+      const double force = std::min(limit, pulse + 0.5 * std::sin(0.01 * i * i));
+      impulse += 0.001 * std::min(limit, pulse);
+      text += std::to_string(i) + ";" + std::to_string(force) + "\n";
+    }
+    const AppRun run = Succeeded(RunApp(
+        "pushid-push", {"--recordings=" + Path("quiet/manifest.json"), "--out=" + Path("p.csv"),
+                        "--sensor=" + WriteText("cell.csv", text), "--overwrite"}));
+    char said[64];
+    std::snprintf(said, sizeof said, "impulse %.2g", impulse);
+    EXPECT_TRUE(Contains(run.out, said));
+    EXPECT_EQ(run.err.find("the sensor's range was exceeded") != std::string::npos, limit == 60.0)
+        << run.err;
+  }
+}
+
 }  // namespace
 }  // namespace pushid

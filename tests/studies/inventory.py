@@ -21,7 +21,7 @@ FEATURES = [
     ("contrasts", 560, 555, r"ident/(fit/(covariates|contrast)|uncertainty/contrast|report/contrast)"),
     ("verdict", 1000, 781, r"ident/uncertainty/(model_verdict|assumptions)"),
     ("steps and stance", 1749, 1641, r"models/(stance|standing|support)|datasets/loading/foot_steps|ident/(fit/step_probability|prediction/predicted_steps|report/page/standing)"),
-    ("laboratory", 1648, 1623, r"models/(ground|reaction_delay|turn)|datasets/(loading/laboratory|manifest/laboratory_keys)|residuals/plate_residual|ident/(parameters/laboratory|fit/laboratory|prediction/laboratory)"),
+    ("laboratory", 1648, 1623, r"models/(ground|reaction_delay|turn)|datasets/(loading/(laboratory|ground_markers)|manifest/laboratory_keys)|residuals/plate_residual|ident/(parameters/laboratory|fit/laboratory|prediction/laboratory)"),
     ("interaction", 450, 538, r"models/(contact|pair|interaction|ldp_interaction|neighbours)"),
     ("learned terms", 1200, 484, r"models/(learned_terms|self_network)|ident/parameters/(learned_terms|self_network)|residuals/takeover"),
     ("large networks", 1295, 1290, r"ident/(large_networks|solver/network_training)|residuals/adjoint/(adjoint_gradient|step)"),

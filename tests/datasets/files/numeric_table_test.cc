@@ -75,6 +75,61 @@ TEST_F(NumericTableTest, SeparatorsAsTheLineOfNamesHasThem) {
   }
 }
 
+// In s, whatever the file counts in; what says s stays.
+TEST_F(NumericTableTest, TimesInMilliseconds) {
+  const struct {
+    const char *name, *step;
+    double seconds;
+  } cases[] = {
+      {"time_ms", "10", 0.01},    {"Time (ms)", "10", 0.01}, {"t [ms]", "0.2", 2e-4},
+      {"T_MS", "1", 0.001},       {"time/ms", "4", 0.004},   {"time", "10", 0.01},
+      {"Time", "1", 0.001},       {"t", "0.5", 5e-4},        {"time", "0.02", 0.02},
+      {"time_s", "10", 10.0},     {"Time (s)", "1", 1.0},    {"seconds", "2", 2.0},
+      {"\"Time [s]\"", "2", 2.0}, {"time(s)", "0.1", 0.1},   {"TIME (sec)", "0.1", 0.1},
+  };
+  for (const auto& one : cases) {
+    const NumericTable read = Unwrapped(ReadNumericTable(
+        WriteText("a.csv", std::string(one.name) + ",a\n0,1\n" + one.step + ",2\n"),
+        TableFormat::kCsv));
+    EXPECT_EQ(FindTimeColumn(read.names, ""), 0) << one.name;
+    EXPECT_EQ(Unwrapped(EvenTimeStep(read, 0)), one.seconds) << one.name;
+  }
+  for (const char* name : {"timing", "ms", "frame", "times_walked"}) {
+    EXPECT_EQ(FindTimeColumn({name}, ""), -1) << name;
+  }
+}
+
+// Where it jumps, not at the first row.
+TEST_F(NumericTableTest, TimesThatJump) {
+  std::string text = "time,a\n";
+  for (int i = 0; i < 20; ++i) text += std::to_string(0.01 * (i + (i > 9 ? 4 : 0))) + ",1\n";
+  const NumericTable read =
+      Unwrapped(ReadNumericTable(WriteText("a.csv", text), TableFormat::kCsv, {nullptr, true}));
+  EXPECT_TRUE(Contains(ProblemOf(EvenTimeStep(read, 0)),
+                       ":12: the times do not ascend in even "
+                       "steps: 0.05 s where 0.01 s is usual"));
+}
+
+TEST_F(NumericTableTest, TimesThatDescend) {
+  const NumericTable read = Unwrapped(
+      ReadNumericTable(WriteText("a.csv", "time,a\n0.2,1\n0.1,1\n0.0,2\n"), TableFormat::kCsv));
+  EXPECT_TRUE(Contains(ProblemOf(EvenTimeStep(read, 0)),
+                       "the times do not ascend: 0.1 s comes after 0.2 s"));
+}
+
+// Cells are empty between tabs; a row that is cut behind one is not.
+TEST_F(NumericTableTest, EmptyCellsOfStorageFiles) {
+  const std::string head = "f\nendheader\ntime\ta\tb\n0\t\t2\n";
+  const NumericTable read =
+      Unwrapped(ReadNumericTable(WriteText("a.mot", head + "1\t3\t\n"), TableFormat::kStorage));
+  EXPECT_TRUE(std::isnan(read.data[1][0]));
+  EXPECT_TRUE(std::isnan(read.data[2][1]));
+  EXPECT_EQ(read.data[2][0], 2.0);
+  EXPECT_TRUE(Contains(
+      ProblemOf(ReadNumericTable(WriteText("a.mot", head + "1\t3\t"), TableFormat::kStorage)),
+      ":5: the row has 2 values, not 3"));
+}
+
 TEST_F(NumericTableTest, BadTables) {
   struct Case {
     TableFormat format;
@@ -99,6 +154,7 @@ TEST_F(NumericTableTest, BadTables) {
       {csv, "a,b\n1,NA\n", "'NA' is not a number; a value that is missing is an empty cell or nan"},
       {csv, "a,b\n1,inf\n", ":2: b: 'inf' is not a finite number"},
       {storage, "f\nnRows=1\n", "endheader"},
+      {storage, "f\nDataType=Vec3\nendheader\ntime\ta\n0\t1,2,3\n", ":2: DataType is 'Vec3'"},
       {storage, "f\nnRows=x\nendheader\na\n1\n", ":2: nRows must be a whole number"},
       {storage, "f\nnRows=3\nendheader\na\n1\n", "declares 3 rows, the file has 1"},
       {storage, "f\nnColumns=3\nendheader\na\n1\n", ":4: the header declares 3 columns"},

@@ -35,7 +35,12 @@ TEST(FrameRateTest, RoundedFrameTimesAreWholeRates) {
   for (double frame_time : {0.016667, 0.0166667, 0.01667, 1.0 / 60.0}) {
     EXPECT_EQ(WholeFrameRate(1.0 / frame_time), 60.0) << frame_time;
   }
-  EXPECT_EQ(WholeFrameRate(1.0 / 0.00833), 120.0);
+  for (double frame_time : {0.00833, 0.0083, 0.0083333}) {
+    EXPECT_EQ(WholeFrameRate(1.0 / frame_time) == 120.0, frame_time != 0.0083) << frame_time;
+  }
+  EXPECT_EQ(WholeFrameRate(1.0 / 0.0333), 30.0);
+  EXPECT_EQ(WholeFrameRate(1.0 / 0.03333), 30.0);
+  EXPECT_NE(WholeFrameRate(1.0 / 0.0334), 30.0);  // of video, 29.97
   EXPECT_EQ(WholeFrameRate(100.0), 100.0);
   // Video is 0.1 % slower than its name; others are not near enough.
   for (double rate : {60.0 / 1.001, 59.94, 30.0 / 1.001, 59.9, 60.07, 12.5, 0.2, 0.0}) {

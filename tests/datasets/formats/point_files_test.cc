@@ -85,6 +85,9 @@ TEST_F(PointFilesTest, BadTrc) {
   const std::vector<Case> cases = {
       {"PathFileType", "BVH", ":1: a TRC file starts with PathFileType"},
       {"60.00\t60.00\t3", "x\t60.00\t3", ":3: DataRate must be"},
+      {"60.00\t60.00\t3", "60.00 60.00 3", "tabs separate cells"},
+      {"1\t0.000\t0.1\t0.2\t0.3\t1\t2\t3\t", "1 0.000 0.1 0.2 0.3 1 2 3",
+       ":6: the row has 1 cells, not 8, separated by tabs"},
       {"60.00\t60.00\t3\t2", "60.00\t60.00\t4\t2", ":8: wrong frame count: NumFrames is 4"},
       {"60.00\t60.00\t3\t2", "60.00\t60.00\t2\t2", ":8: wrong frame count: NumFrames is 2"},
       {"60.00\t60.00\t3\t2", "60.00\t60.00\t3\t5", ":4: NumMarkers is 5, but 2 markers"},
@@ -92,7 +95,8 @@ TEST_F(PointFilesTest, BadTrc) {
       {"1\t0.000\t0.1", "1\t0.000\tabc", ":6: L.ASIS: 'abc' is not a number"},
       {"1\t0.000\t0.1", "1\tnow\t0.1", ":6: Time: 'now' is not a number"},
       {"3\t\n", "3\t4\n", ":6: the row has 9 cells, not 8"},
-      {"3\t0.033", "3\t0.066", ":8: Time grows by 0.033 s a row, 30.303 rows a second, but"},
+      {"60.00\t60.00\t3", "30.00\t60.00\t3",
+       ":8: Time grows by 0.0165 s a row, 60.6061 rows a second, but DataRate is 30"},
       {"0.2\t0.3\n", "0.2\n", ":7: L.ASIS: 1 of its 3 cells is missing"},
       {"0.2\t0.3\n", "0.2\t0.3\t1\n", ":7: R.Heel: 2 of its 3 cells are missing"},
       {"0.1\t0.2\t0.3\t1", "\t0.2\tnan\t1", ":6: L.ASIS: 2 of its 3 cells are missing"},
@@ -114,13 +118,42 @@ TEST_F(PointFilesTest, ATrcWithoutOneOfItsRows) {
                        "bad.trc:7: rows are missing before this one: Frame# goes from 1 to 3"));
 }
 
-// A number of the largest size has none after it; one more once overflowed.
-TEST_F(PointFilesTest, TrcOfTheLargestFrameNumber) {
-  std::string text = kTrc;
-  text.replace(text.find("1\t0.000"), 1, "99999999999999999999");
-  text.erase(text.find("\n3\t") + 1);
-  EXPECT_TRUE(Contains(ProblemOf(ReadTrc(WriteText("bad.trc", text))),
-                       "wrong frame count: NumFrames is 3"));
+// Frame# and Time of a file whose NumFrames is that of its rows.
+TEST_F(PointFilesTest, TrcWhoseRowsDoNotFollowEachOther) {
+  const struct {
+    double rate;
+    std::vector<std::pair<std::string, std::string>> rows;
+    const char* says;
+  } cases[] = {
+      {100, {{"1", "0"}, {"2", "0.01"}, {"3", "0.02"}, {"8", "0.07"}}, "Frame# goes from 3 to 8"},
+      {100, {{"1", "0"}, {"2", "0.01"}, {"4", "0.02"}}, "Frame# goes from 2 to 4"},
+      {100, {{"1", "0"}, {"2", "0.01"}, {"3", "0.03"}}, "Time goes from 0.01 to 0.03 s"},
+      {100, {{"1", "0"}, {"3", "0.02"}, {"4", "0.03"}}, "Frame# goes from 1 to 3"},
+      {100,
+       {{"1", "0"}, {"2", "0.01"}, {"2", "0.01"}},
+       "in another order here: Frame# goes from 2"},
+      {100, {{"1", "0"}, {"3", "0.02"}, {"2", "0.01"}}, "rows are missing before this one"},
+      {100,
+       {{"2", "0.01"}, {"1", "0"}, {"3", "0.02"}},
+       "in another order here: Frame# goes from 2"},
+      {100, {{"0", "0"}, {"0", "0.01"}, {"0", "0.03"}}, "Time goes from 0.01 to 0.03 s"},
+      {1000, {{"1", "0"}, {"2", "0.001"}, {"4", "0.003"}}, "Frame# goes from 2 to 4"},
+      {100, {{"99999999999999999999", "0"}, {"2", "0.01"}}, "Frame# goes from 1e+20 to 2"},
+      // Every fifth frame; from another number; no numbers; times in ms of fast cameras.
+      {20, {{"1", "0"}, {"6", "0.05"}, {"11", "0.1"}}, "no error"},
+      {100, {{"200", "2"}, {"201", "2.01"}, {"202", "2.02"}}, "no error"},
+      {100, {{"0", "0"}, {"0", "0.01"}, {"0", "0.02"}}, "no error"},
+      {2000, {{"1", "0"}, {"2", "0"}, {"3", "0.001"}, {"4", "0.001"}}, "no error"},
+      {240, {{"1", "0"}, {"2", "0.004"}, {"3", "0.008"}, {"4", "0.013"}}, "no error"},
+      {60, {{"1.0", "0.0"}, {"2.0", "0.016666"}, {"3.0", "0.033333"}}, "no error"},
+  };
+  for (const auto& one : cases) {
+    std::string text = "PathFileType\t4\t(X/Y/Z)\ta.trc\nDataRate\tNumFrames\tNumMarkers\tUnits\n" +
+                       std::to_string(one.rate) + "\t" + std::to_string(one.rows.size()) +
+                       "\t1\tmm\nFrame#\tTime\tHip\n\t\tX1\tY1\tZ1\n";
+    for (const auto& [frame, time] : one.rows) text += frame + "\t" + time + "\t1\t2\t3\n";
+    EXPECT_TRUE(Contains(ProblemOf(ReadTrc(WriteText("a.trc", text))), one.says)) << text;
+  }
 }
 
 // Wherever a file is cut, the last row shows it, up to its last number.
@@ -152,6 +185,22 @@ TEST(PointsOfTest, ColumnsThatBelongTogether) {
   EXPECT_EQ(points[1].name, "L");
   EXPECT_EQ(points[1].columns[2], 6);
   EXPECT_EQ(points[2].name, "ground_force_v");
+}
+
+TEST(PointsOfTest, NumbersThatOpenSimGivesThem) {
+  const std::vector<TablePoint> points = PointsOf(
+      {"time", "LASI_1", "LASI_2", "LASI_3", "q_1", "q_2", "q_3", "q_4", "a1", "a2", "a3", "b_1"});
+  ASSERT_EQ(points.size(), 1u);
+  EXPECT_EQ(points[0].name, "LASI");
+  EXPECT_EQ(points[0].columns[2], 3);
+}
+
+TEST(PointsOfTest, WithoutWhatPlatformsMeasure) {
+  PointMotion motion;
+  motion.names = {"left_v", "left_p", "left_m",         "f",  "p",    "m",
+                  "hip",    "r_p",    "ground_force_v", "Lp", "clav", "ground_moment_m"};
+  motion.positions.resize(motion.names.size());
+  EXPECT_EQ(WithoutForces(motion).names, (std::vector<std::string>{"hip", "r_p", "Lp", "clav"}));
 }
 
 TEST_F(PointFilesTest, CsvPointsAndTheirRate) {

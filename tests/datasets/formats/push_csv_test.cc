@@ -23,12 +23,27 @@ TEST_F(PushCsvTest, Reads) {
   }
 }
 
+TEST_F(PushCsvTest, ReadsWhatIsPlain) {
+  for (const char* text :
+       {"Frame,Fx,Fy,Ftheta,Fphi\n0,1,-2.5,30,4\n", "FRAME;FX;FY;FTHETA;FPHI\n0;1;-2.5;30;4\n",
+        "frame\tfx\tfy\tftheta\tfphi\n0\t1\t-2.5\t30\t4\n",
+        "\"frame\",\"fx\",\"fy\",\"ftheta\",\"fphi\"\n\"0\",\"1\",\"-2.5\",\"30\",\"4\"\n",
+        "frame,fx (N),fy (N),ftheta (N m),fphi (N m)\n0,1,-2.5,30,4\n",
+        "frame,fx_N,fy_N,ftheta_Nm,fphi_Nm\n0,1,-2.5,30,4\n",
+        "# by hand\nframe,fx,fy,ftheta,fphi\n0.0,1,-2.5,30,4\n",
+        "frame,fx[N],fy[N],ftheta[N.m],fphi[N.m],\n0,1,-2.5,30,4,\n"}) {
+    EXPECT_EQ(Unwrapped(ReadPushCsv(WriteText("push.csv", text))).force,
+              std::vector<Eigen::Vector4d>{Eigen::Vector4d(1, -2.5, 30, 4)})
+        << text;
+  }
+}
+
 TEST_F(PushCsvTest, TorquesMayBeLeftOut) {
   const PushRows read = Unwrapped(ReadPushCsv(WriteText("push.csv", "frame,fx,fy\n0,1,-2.5\n")));
   EXPECT_FALSE(read.has_torques);
   EXPECT_EQ(read.force, std::vector<Eigen::Vector4d>{Eigen::Vector4d(1, -2.5, 0, 0)});
   EXPECT_TRUE(Contains(ProblemOf(ReadPushCsv(WriteText("push.csv", "frame,fx,fy\n0,1,2,3\n"))),
-                       "more than 3 values"));
+                       "more than the 3 values"));
   EXPECT_FALSE(ReadPushCsv(WriteText("push.csv", "frame,fx,fy,ftheta\n0,1,2,3\n")).ok());
 }
 
@@ -58,20 +73,22 @@ TEST_F(PushCsvTest, EveryDamageIsNamedWithItsLine) {
     const char* place;
     const char* says;
   } cases[] = {
-      {"", "", "the file is empty"},
-      {"frame,fx,fy,ftheta\n0,1,2,3\n", ":1: ", "the header is 'frame,fx,fy,ftheta'"},
-      {"frame;fx;fy;ftheta;fphi\n", ":1: ", "not frame,fx,fy,ftheta,fphi"},
-      {"0,1,2,3,4\n", ":1: ", "the header is"},
+      {"", "", "it is empty"},
+      {"time;Force\n", ":1: ", "pushid-push --sensor makes such a push of it"},
+      {"frame,fx (kN),fy (kN),ftheta,fphi\n", ":1: ", "the header is 'frame, fx (kN)"},
+      {"frame,fy,fx,ftheta,fphi\n", ":1: ", "not frame,fx,fy,ftheta,fphi"},
+      {"frame,fx,fy,ftheta\n0,1,2,3\n", ":1: ", "the header is 'frame, fx, fy, ftheta'"},
+      {"0,1,2,3,4\n", ":1: ", "the first line must hold the names"},
       {header, ":1: ", "has no rows"},
       {header + "0,1,2,3,4\n2,1,2,3,4\n", ":3: ", "frame is 2 where 1 was expected"},
       {header + "1,1,2,3,4\n", ":2: ", "frame is 1 where 0 was expected; rows must count"},
       {header + "0,1,2,3,4\n0,1,2,3,4\n", ":3: ", "without gaps"},
-      {header + "0.0,1,2,3,4\n", ":2: ", "frame: '0.0' is not a whole number"},
+      {header + "0.5,1,2,3,4\n", ":2: ", "frame is 0.5 where 0 was expected"},
       {header + "0,1,2,3\n", ":2: ", "the row has 4 values, not 5"},
-      {header + "0,1,2,3,4,5\n", ":2: ", "more than 5 values"},
-      {header + "0,1,2,3,\n", ":2: ", "fphi: a number is missing"},
+      {header + "0,1,2,3,4,5\n", ":2: ", "more than the 5 values"},
+      {header + "0,1,2,3,\n", ":2: ", "fphi is missing"},
       {header + "0,abc,2,3,4\n", ":2: ", "fx: 'abc' is not a number"},
-      {header + "0,1,nan,3,4\n", ":2: ", "fy: 'nan' is not a finite number"},
+      {header + "0,1,nan,3,4\n", ":2: ", "fy is missing"},
       {header + "0,1,2,inf,4\n", ":2: ", "ftheta: 'inf' is not a finite number"},
       {header + "0,1,2,3,1e999\n", ":2: ", "fphi: '1e999' does not fit"},
       {header + "0,1 2,2,3,4\n", ":2: ", "fx: '1 2' is not a number"},

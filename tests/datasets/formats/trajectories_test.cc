@@ -58,6 +58,21 @@ TEST_F(TrajectoriesTest, AsCsv) {
 }
 
 // Of vertical tabs and form feeds too; such a line once ended the program.
+TEST_F(TrajectoriesTest, HeadsAsPeopleWriteThem) {
+  for (const char* text :
+       {"ID,Frame,X,Y\n1,0,1,2\n", "Id;Frame;X;Y\n1;0;1;2\n", "id\tframe\tX\tY\n1\t0\t1\t2\n",
+        "\"id\",\"frame\",\"x\",\"y\"\n1,0,1,2\n", "frame,id,y,x\n0,1,2,1\n",
+        "id,frame,x/m,y/m\n1,0,1,2\n", "id,frame,x(cm),y(cm)\n1,0,100,200\n",
+        "id, frame, x [m], y [m]\n1, 0, 1, 2\n", "id;frame;x/cm;y/cm\n1;0;100;200\n",
+        "ID FRAME X Y\n1 0 1 2\n"}) {
+    const std::string path = WriteText("a.csv", "# framerate: 10\n" + std::string(text));
+    const PointMotion read = Unwrapped(ReadTrajectoryText(path));
+    EXPECT_EQ(read.names, std::vector<std::string>{"1"}) << text;
+    EXPECT_NEAR(read.positions[0][0].y() * MetresPer(*read.unit), 2.0, 1e-12) << text;
+    EXPECT_TRUE(IsCrowdCsv(path)) << text;
+  }
+}
+
 TEST_F(TrajectoriesTest, BlankLines) {
   const PointMotion read = Unwrapped(ReadTrajectoryText(
       WriteText("crowd.txt", "# framerate: 8\n\v\v\n1 0 1 2\n\f\n \t\r\n1 1 1 3\n\v")));

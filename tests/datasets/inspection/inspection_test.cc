@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <tuple>
 
@@ -142,8 +143,50 @@ TEST_F(InspectionTest, StartAndOnset) {
   // From rest, pushed from the first frame on: cutting the start would cut the push.
   for (int t = 0; t < 100; ++t) motion_.positions[0][t].x() = 0.2 * t * t;
   const std::string pushed = Said();
-  EXPECT_TRUE(Contains(pushed, "start           the push begins at the first frame"));
+  EXPECT_TRUE(Contains(pushed, "start           at rest, and pushed within the first 0.1 s"));
   EXPECT_FALSE(Contains(pushed, "moves at the start")) << pushed;
+}
+
+// People at rest who are pushed at 0 to 0.9 s do not move at the start; who walks in or sways does.
+TEST_F(InspectionTest, RestBeforeThePush) {
+  const auto moves = [this](const std::function<double(double s)>& way) {
+    for (int t = 0; t < 100; ++t) motion_.positions[0][t].x() = 1000.0 * way(t / 100.0);
+    return static_cast<bool>(Contains(Said(), "moves at the start"));
+  };
+  for (double rest : {0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.5, 0.9}) {
+    const bool walks = moves([rest](double s) { return 0.3 * std::max(0.0, s - rest); });
+    EXPECT_EQ(walks, rest == 0.0) << rest;
+    EXPECT_FALSE(moves([rest](double s) { return std::pow(std::max(0.0, s - rest), 2); })) << rest;
+  }
+  for (double speed : {0.06, 0.1, 0.3, 1.0}) {
+    EXPECT_TRUE(moves([speed](double s) { return speed * s; })) << speed;
+  }
+}
+
+TEST_F(InspectionTest, TwoPointsOfOneNameHaveTheirIndices) {
+  motion_.names = {"Hips", "LANK", "LANK"};
+  EXPECT_TRUE(Contains(Said(), "could be 'LANK' or 'LANK'; give its index, 1 or 2, by"));
+}
+
+TEST_F(InspectionTest, PlatformsOfATableAreNoPoints) {
+  WriteText("f.mot",
+            "f\nendheader\ntime\tleft_vx\tleft_vy\tleft_vz\tleft_px\tleft_py\tleft_pz\n"
+            "0\t1\t700\t2\t0.1\t0\t0.1\n0.01\t1\t700\t2\t0.1\t0\t0.1\n");
+  const std::string said = Of("f.mot");
+  EXPECT_TRUE(Contains(said, "which \"force_plates\" of a manifest reads"));
+  EXPECT_FALSE(Contains(said, "recognised as hip")) << said;
+}
+
+TEST_F(InspectionTest, GapsOfACrowd) {
+  WriteText("c.txt", "# framerate: 10\n1 0 0 0\n1 1 0 0\n1 4 0 0\n1 5 0 0\n2 2 1 0\n2 3 1 0\n");
+  EXPECT_TRUE(Contains(Of("c.txt"), "frames not seen between a person's first and last: 1 2\n"));
+}
+
+TEST_F(InspectionTest, SensorsAndPushesByTheirNames) {
+  WriteText("f.csv", "\"Time (ms)\";\"Force (N)\"\n0;0\n10;50\n20;0\n");
+  EXPECT_TRUE(Contains(Of("f.csv"), "peak 50 N, impulse 0.5 N s, above 20 N from 0.01 s"));
+  WriteText("p.csv", "Frame;FX (N);FY (N)\n0;3;4\n");
+  EXPECT_TRUE(Contains(Of("p.csv"), "push CSV"));
 }
 
 TEST_F(InspectionTest, ForcesDoNotHideTheMotion) {

@@ -156,7 +156,7 @@ std::string Plates(double vertical, double x, int frames) {
   std::string text = "time,fx,fy,fz,px,py\n";
   for (int t = 0; t < frames; ++t) {
     text += std::to_string(t / 100.0) + ",0,0," + std::to_string(vertical) + "," +
-            std::to_string(x) + ",0\n";
+            std::to_string(x) + ",0.001\n";
   }
   return text;
 }
@@ -212,6 +212,9 @@ INSTANTIATE_TEST_SUITE_P(
         std::tuple("not_pressed", kPlates, Plates(1.0, 0.0, 200), "pressed with less than"),
         std::tuple("plates_end_early", kPlates, Plates(800.0, 0.0, 60),
                    "the platforms were recorded from 0 to 0.59 s"),
+        std::tuple("no_centres", kPlates,
+                   "time,fx,fy,fz,px,py\n0,0,0,700,nan,nan\n0.01,0,0,700,0,0\n0.02,0,0,700,,\n",
+                   "wrong.csv:2: recording 'S01_00_weak': platform 1 is pressed and has no centre"),
         std::tuple("no_plate_columns", kPlates, "time,a\n0,1\n0.01,2\n0.02,3\n",
                    "no columns of a force platform"),
         std::tuple("plates_in_bvh", R"({"force_plates": {"use": "measure"}})", "",
@@ -293,6 +296,84 @@ TEST_F(LaboratoryTest, PlatformsAddUp) {
     const PlateSample& s = made_[0].recording.people[0].plates[t];
     EXPECT_LT((plates[t].force - s.force).norm(), 1.0) << t;
     EXPECT_LT((plates[t].centre - s.centre).norm(), 1e-3) << t;
+  }
+}
+
+// One foot on each of two platforms, 0.4 m apart. Where one lacks its centre under load, the frames
+// have no weight and the others are as they were; an unloaded one needs none.
+TEST_F(LaboratoryTest, CentresThatAreMissingUnderLoad) {
+  const SyntheticOptions options = OnPlatform(GroundKind::kStep);
+  struct Gap {
+    std::string cells;
+    int from, to;
+    double left = 0.5;  // its share of the load
+    bool counts = false;
+  };
+  for (const Gap& gap : {Gap{"nan,nan", 60, 80}, Gap{"0,0", 60, 80}, Gap{",", 60, 80},
+                         Gap{"nan,0.1", 60, 80}, Gap{"nan,nan", 0, 20}, Gap{"0,0", 130, 150},
+                         Gap{"nan,nan", 70, 71}, Gap{"0.0,-0.0", 10, 140}, Gap{"0,0", 0, 140},
+                         Gap{"nan,nan", 0, 150, 0.0, true}, Gap{"0,0", 0, 150, 0.0, true}}) {
+    Warnings warnings;
+    Load(options, [&, this](Json* entry) {
+      std::string text = "time,l_fx,l_fy,l_fz,l_px,l_py,r_fx,r_fy,r_fz,r_px,r_py\n";
+      for (int t = 0; t < options.frames; ++t) {
+        const PlateSample& s = made_[0].recording.people[0].plates[t];
+        text += std::to_string(t / 100.0);
+        for (const auto& [share, side] :
+             {std::pair(gap.left, 0.2), std::pair(1 - gap.left, -0.2)}) {
+          for (double f : s.force) text += "," + std::to_string(share * f);
+          const bool lost = side > 0.0 && t >= gap.from && t < gap.to;
+          const double y = s.centre[1] + (gap.left > 0.0 ? side : 0.0);
+          text += "," + (lost ? gap.cells : std::to_string(s.centre[0]) + "," + std::to_string(y));
+        }
+        text += "\n";
+      }
+      WriteText("two.csv", text);
+      (*entry)["force_plates"] = {{"file", "two.csv"}, {"plates", {"l", "r"}}, {"lowpass_hz", 45}};
+    }).ok();
+    const auto loaded = Unwrapped(LoadRecordings(Path("manifest.json"), LoadOptions(), &warnings));
+    EXPECT_EQ(warnings.size(), gap.counts ? 0u : 1u) << gap.cells << " " << gap.from;
+    if (!gap.counts) {
+      EXPECT_TRUE(Contains(warnings.at(0).text,
+                           "platform 1 is pressed and has no centre of "
+                           "pressure (empty, nan or zeros) in " +
+                               std::to_string(gap.to - gap.from) + " rows, from line " +
+                               std::to_string(gap.from + 2)));
+    }
+    const std::vector<PlateSample>& plates = loaded[0].people[0].plates;
+    for (int t = 0; t < options.frames; ++t) {
+      const PlateSample& s = made_[0].recording.people[0].plates[t];
+      const bool lost = !gap.counts && t >= gap.from && t < gap.to;
+      EXPECT_TRUE(!lost || plates[t].weight == 0.0) << gap.cells << " " << t;
+      EXPECT_TRUE(plates[t].weight > 0.0 || (t > gap.from - 4 && t < gap.to + 4)) << t;
+      if (t < 5 || t + 5 >= options.frames || plates[t].weight == 0.0) continue;
+      EXPECT_LT((plates[t].centre - s.centre).norm(), 2e-3) << gap.cells << " " << t;
+    }
+  }
+}
+
+// The force on the platform, as some laboratories store it.
+TEST_F(LaboratoryTest, ForcesOfTheOtherSign) {
+  const SyntheticOptions options = OnPlatform(GroundKind::kStep);
+  Load(options, [&, this](Json* entry) {
+    std::string text = "time,fx,fy,fz,px,py\n";
+    for (int t = 0; t < options.frames; ++t) {
+      const PlateSample& s = made_[0].recording.people[0].plates[t];
+      text += std::to_string(t / 100.0);
+      for (double f : s.force) text += "," + std::to_string(-f);
+      text += "," + std::to_string(s.centre[0]) + "," + std::to_string(s.centre[1]) + "\n";
+    }
+    WriteText("other.csv", text);
+    (*entry)["force_plates"] = {{"file", "other.csv"}, {"lowpass_hz", 45}};
+  }).ok();
+  Warnings warnings;
+  const auto loaded = Unwrapped(LoadRecordings(Path("manifest.json"), LoadOptions(), &warnings));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(Contains(warnings[0].text, "taken as that on the platform; is \"up\" right?"));
+  for (int t = 5; t + 5 < options.frames; ++t) {
+    const PlateSample& s = made_[0].recording.people[0].plates[t];
+    EXPECT_LT((loaded[0].people[0].plates[t].force - s.force).norm(), 1.0) << t;
+    EXPECT_LT((loaded[0].people[0].plates[t].centre - s.centre).norm(), 1e-3) << t;
   }
 }
 
