@@ -40,7 +40,7 @@ FEATURES = [
     ("prediction, evaluation, cross-validation", 2700, 4494, r"ident/(prediction|validation)|apps/pushid_(predict|evaluate|crossvalidate)|apps/flags/scheme"),
     ("loop and frequency", 800, 524, r"ident/(diagnostics/(frequency|loop|spectra|sway)|problem/linear_loop|report/loop|figures/bode)|models/modal"),
     ("uncertainty", 3200, 3844, r"ident/(uncertainty|problem/residual_rows|checks|fit/interval)|apps/(pushid_check|flags/check)"),
-    ("reports", 2800, 3991, r"ident/report|apps/pushid_report"),
+    ("reports", 2800, 3991, r"ident/(report|figures/screen)|apps/pushid_report"),
     ("charts", 1000, 1040, r"ident/figures"),
     ("exchange", 350, 367, r"datasets/(exchange|formats/(trajector|motion_bids))|apps/pushid_export"),
     ("formats", 3900, 4260, r"datasets/(formats|files/(numeric_table|input_file|number_text|names|atomic|error|npy|random))"),
