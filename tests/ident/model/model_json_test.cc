@@ -11,6 +11,7 @@
 #include "datasets/files/json_file.h"
 #include "ident/fit/fit.h"
 #include "ident/report/page/build_report.h"
+#include "ident/report/report_text.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
