@@ -5,10 +5,10 @@
 
 #include <numeric>
 
+#include "ident/figures/screen.h"
 #include "ident/fit/fit.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/report/advice.h"
-#include "ident/figures/screen.h"
 #include "ident/report/page/build_report.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
