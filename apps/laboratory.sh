@@ -21,15 +21,16 @@ say "Who stands: feet that hold and a reaction delay, from markers and platforms
 echo "  $(realpath "$out")/report.html"
 
 say "Who steps: predicted by the model of who stands"
-"$bin/pushid-evaluate" --model="$out/standing.json" --recordings="$manifest" --setting=stepping --per_recording=false \
+"$bin/pushid-evaluate" --model="$out/standing.json" --recordings="$manifest" --setting=stepping \
   --json_out="$out/stepping.json" >"$out/stepping.txt" 2>"$out/warnings.txt"
-tail -n 1 "$out/stepping.txt"
+grep '^steps:' "$out/stepping.txt"
 
 say "Result"
 awk -F '  +' '
   FILENAME ~ /standing.txt$/ {
     if (!($1 in status) && $4 ~ /^\[/) status[$1] = $6
-    if (/^The model (fits|does not fit)/) verdict = $0
+    if (/^The model does not fit/ && !verdict) { verdict = $0; said = 1; next }
+    if (said && NF) verdict = verdict " " $0; else said = 0
     if ($1 == "lag of the pushes") lag = $3
     next
   }

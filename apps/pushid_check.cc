@@ -15,12 +15,14 @@
 #include "ident/parameters/presets.h"
 #include "ident/problem/parallel.h"
 #include "ident/report/advice.h"
+#include "ident/report/page/build_report.h"
 #include "ident/report/report_text.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote; the checks are added to it");
 DEFINE_string(model_out, "", "write the model with the checks here (JSON) instead of to --model");
 DEFINE_string(seed, "", "seed of all random numbers (default: that of the fit)");
 DEFINE_int32(num_threads, 1, "threads; results are the same for any number");
+DEFINE_bool(details, false, "print the model's whole report too");
 
 DEFINE_string(profile, "",
               "profile likelihood of these parameters and combinations, comma-separated; all (or "
@@ -119,11 +121,10 @@ int Run() {
   AddToProvenance(&model.provenance);
   model.provenance.model_file = out;
   Add(recordings, checks, &model);
-  const std::string sections = OrFail(CheckSections(recordings, checks, model.fit));
-  std::printf("%s%s", ReportText(model).c_str(), sections.c_str());
-  if (!writes) return kDone;
-  OrFail(WriteModelFile(out, model, FLAGS_num_threads, begin));
-  std::printf("model with the checks written to %s\n", out.c_str());
+  const Screen found = OrFail(CheckScreen(recordings, checks, model));
+  if (FLAGS_details) std::printf("%s", DetailsText(model).c_str());
+  std::printf("%s", found.ToString().c_str());
+  if (writes) OrFail(WriteModelFile(out, model, FLAGS_num_threads, begin));
   return kDone;
 }
 

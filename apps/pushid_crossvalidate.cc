@@ -45,6 +45,7 @@ DEFINE_bool(bands, false,
             "also score how often predictive 50 and 90 % bands contain the held-out recordings");
 DEFINE_string(group_by, pushid::LabelKeysText(pushid::UsualGroups()),
               "labels that scores are grouped by: subject, or any label of the manifest");
+DEFINE_bool(details, false, "print all tables, of folds and groups too, instead of one screen");
 DEFINE_string(json_out, "", "write the scores here (JSON)");
 
 namespace {
@@ -209,7 +210,9 @@ int Run() {
                                         ParseLabelKeys(FLAGS_group_by)));
   }
   line.Finish();
-  std::printf("%s", CrossValidationText(validations).c_str());
+  std::printf("%s", (FLAGS_details ? CrossValidationText(validations)
+                                   : CrossValidationScreen(validations).ToString())
+                        .c_str());
   if (!FLAGS_json_out.empty()) OrFail(WriteJson(FLAGS_json_out, ScoresJson(validations)));
   return kDone;
 }

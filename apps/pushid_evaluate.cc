@@ -24,7 +24,8 @@
 DEFINE_string(group_by, pushid::LabelKeysText(pushid::UsualGroups()),
               "labels that scores are grouped by: subject, or any label of the manifest");
 DEFINE_string(json_out, "", "write the scores here (JSON)");
-DEFINE_bool(per_recording, true, "print a line for every recording");
+DEFINE_bool(details, false, "print all tables instead of one screen");
+DEFINE_bool(per_recording, false, "print them, and a line and the steps of every recording");
 
 namespace {
 
@@ -71,15 +72,20 @@ int Run() {
   WarnGrouped(InputWarnings(model, pendulums));
   const Evaluation evaluation = Evaluate(model, pendulums, ObservedFrames(), group_by,
                                          ForecastUseFlag(), {drawn, kFuturesSeed});
-  std::printf("%s", EvaluationText(evaluation, FLAGS_per_recording).c_str());
-  std::printf("\n%s", StepsReport(pendulums, FLAGS_per_recording).c_str());
+  const std::string steps = StepsReport(pendulums, FLAGS_per_recording);
+  if (FLAGS_details || FLAGS_per_recording) {
+    std::printf("%s\n%s%s", EvaluationText(evaluation, FLAGS_per_recording).c_str(), steps.c_str(),
+                bodies ? ("\n" + BodyText(*bodies)).c_str() : "");
+  } else {
+    Screen screen = EvaluationScreen(evaluation);
+    screen.paragraphs.push_back(steps);
+    if (bodies) screen.tables.push_back(BodyTable(*bodies));
+    std::printf("%s", screen.ToString().c_str());
+  }
   nlohmann::ordered_json json = ResultHead(kScoresSchema);
   json.update(ToJson(evaluation));
   AddStepsJson(pendulums, &json);
-  if (bodies) {
-    std::printf("\n%s", BodyText(*bodies).c_str());
-    AddBodyJson(*bodies, &json);
-  }
+  if (bodies) AddBodyJson(*bodies, &json);
   if (!FLAGS_json_out.empty()) OrFail(WriteJson(FLAGS_json_out, json));
   return kDone;
 }

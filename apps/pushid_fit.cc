@@ -17,10 +17,12 @@
 #include "ident/parameters/presets.h"
 #include "ident/problem/parallel.h"
 #include "ident/report/advice.h"
+#include "ident/report/page/build_report.h"
 #include "ident/report/report_text.h"
 #include "ident/uncertainty/bootstrap.h"
 
 DEFINE_string(model_out, "", "write the identified model here (JSON)");
+DEFINE_bool(details, false, "print the whole report instead of one screen");
 DEFINE_int32(replica, 0,
              "fit bootstrap replica k: as many people or recordings, drawn with "
              "replacement from --seed and k; 0: the recordings as they are");
@@ -74,10 +76,9 @@ int Run() {
   model.provenance.model_file = FLAGS_model_out;
   model.advice = Advise(model);
 
-  std::printf("%s", ReportText(model).c_str());
+  std::printf("%s", (FLAGS_details ? DetailsText(model) : ScreenOf(model).ToString()).c_str());
   if (!FLAGS_model_out.empty()) {
     OrFail(WriteModelFile(FLAGS_model_out, model, NumThreads(), begin));
-    std::printf("model written to %s\n", FLAGS_model_out.c_str());
   }
   if (result.converged) return kDone;
   return Fail("the fit did not converge: " + result.message, kFitFailed);

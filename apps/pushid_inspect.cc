@@ -13,11 +13,13 @@
 #include "datasets/inspection/inspection.h"
 #include "datasets/manifest/joint_mapping.h"
 #include "ident/figures/chart.h"
+#include "ident/figures/screen.h"
 #include "ident/formations/formation_run.h"
 
 DEFINE_string(mapping, "", "mapping file: which columns or joints are hip and ankles, time, rate");
 DEFINE_string(svg_out, "", "draw hip, gaps and forces here (SVG); for one file");
 DEFINE_string(json_out, "", "write what was found of all files here (JSON)");
+DEFINE_bool(details, false, "print all that was found instead of one screen a file");
 DEFINE_bool(wave, false,
             "instead: how a push travels through the people of trajectories, of a table with a "
             "point for each person, or of a manifest's groups; no model and no fit");
@@ -144,6 +146,15 @@ std::string InspectionSvg(const Inspection& found) {
   return DrawFigure(figure, kInspectionWidth, found.path).ToString();
 }
 
+Screen ScreenOf(const Inspection& found) {
+  Screen screen{found.path + ": " + found.format};
+  TextTable table({"what", "found"});
+  for (const auto& [what, said] : found.facts) table.Add({what, said});
+  screen.tables = {table};
+  screen.warnings = found.warnings;
+  return screen;
+}
+
 int Run() {
   CheckFlags();
   if (FLAGS_wave) return RunWaves();
@@ -158,7 +169,8 @@ int Run() {
       outcome = Fail(found.error());
       continue;
     }
-    std::printf("%s", InspectionText(found.value()).c_str());
+    std::printf("%s", FLAGS_details ? TextLines(InspectionText(found.value())).c_str()
+                                    : ScreenOf(found.value()).ToString().c_str());
     all.push_back(InspectionJson(found.value()));
     if (FLAGS_svg_out.empty()) continue;
     const Inspection& seen = found.value();

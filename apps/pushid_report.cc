@@ -18,7 +18,7 @@
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote");
 DEFINE_string(truth, "", "manifest.json of pushid-simulate: only compare with its true values");
 DEFINE_string(html_out, "", "write the whole report here: one self-contained page (HTML)");
-DEFINE_bool(details, false, "print the whole report, and what the intervals are made of");
+DEFINE_bool(details, false, "print the whole report instead of one screen");
 DEFINE_int32(num_threads, 1, "threads");
 
 DEFINE_string(
@@ -97,7 +97,7 @@ int Run() {
     return kDone;
   }
   if (FLAGS_details || !FLAGS_html_out.empty() || FiguresAsked()) return WriteWhole(model);
-  std::printf("%s", ReportText(model).c_str());
+  std::printf("%s", ScreenOf(model).ToString().c_str());
   return kDone;
 }
 

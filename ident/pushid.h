@@ -7,7 +7,7 @@
 //   options.page = "report.html";
 //   pushid::Result<pushid::Study> study = pushid::RunStudy(options);
 //   if (!study.ok()) return Fail(study.error().ToString());
-//   std::cout << pushid::ReportText(study.value().model);
+//   std::cout << pushid::ScreenOf(study.value().model).ToString();
 //
 // The paper is LDP: Yue et al., Human Motion Prediction under Unexpected Perturbation, CVPR 2024.
 // pushid estimates its parameters with intervals and a verdict instead of training them.

@@ -43,8 +43,8 @@ std::vector<FlagInfo> OwnFlags() {
 
 // Flags that name outputs or change only speed and messages are no part of a result.
 bool IsPartOfResult(const FlagInfo& flag) {
-  static const std::set<std::string> kLeftOut = {"quiet", "num_threads", "check",
-                                                 "list_parameters"};
+  static const std::set<std::string> kLeftOut = {"quiet",           "num_threads", "check",
+                                                 "list_parameters", "details",     "per_recording"};
   return !IsOutputFlag(flag.name) && kLeftOut.count(flag.name) == 0;
 }
 

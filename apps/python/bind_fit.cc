@@ -58,7 +58,13 @@ FittedModel InCalls(const Model& model, const Advised& calls) {
 }
 
 std::string Text(const Model& model, const Advised& calls) {
-  return InPython(ReportText(InCalls(model, calls)));
+  Screen screen = ScreenOf(InCalls(model, calls));
+  screen.rest = "the rest: result.details; a page: result.report; all numbers: result.json";
+  return InPython(screen.ToString());
+}
+
+std::string Details(const Model& model, const Advised& calls) {
+  return InPython(DetailsText(InCalls(model, calls)));
 }
 
 std::string JsonText(const Model& model) { return ToJson(*model.fitted, RunInfo()).dump(); }
@@ -407,6 +413,7 @@ void BindFits(py::module_* module) {
   py::class_<Model, std::shared_ptr<Model>>(*module, "Model")
       .def("json", &JsonText)
       .def("text", &Text)
+      .def("details", &Details)
       .def_property_readonly("converged", [](const Model& m) { return m.fitted->fit.converged; })
       .def_property_readonly("warnings",
                              [](const Model& m) { return InPython(m.fitted->fit.warnings); })

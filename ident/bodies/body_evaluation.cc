@@ -265,32 +265,35 @@ std::string TimedErrorsText(const BodyEvaluation& evaluation) {
   return table.ToString();
 }
 
-std::string BodyText(const BodyEvaluation& evaluation) {
-  std::string text = "bodies, means over recordings\n";
-  TextTable table = NewTable("");
+TextTable BodyTable(const BodyEvaluation& evaluation) {
+  TextTable table = NewTable("bodies, means over recordings");
   const auto found = evaluation.find("restoration");
-  const bool restores = found != evaluation.end();
-  if (restores) {
+  if (found != evaluation.end()) {
     table.Add(Row("restoration", found->second.mean));
     table.Add(Row("  frame-weighted", found->second.frame_weighted));
   }
   for (const auto& [name, summary] : evaluation) {
     if (name != "restoration") table.Add(Row(Spaced(name), summary.mean));
   }
-  text += table.ToString() + GroupsText(evaluation);
-  if (!restores) return text;
-  text += "\n";
+  return table;
+}
+
+std::string BodyText(const BodyEvaluation& evaluation) {
+  const std::string text = BodyTable(evaluation).ToString() + GroupsText(evaluation);
+  const auto found = evaluation.find("restoration");
+  if (found == evaluation.end()) return text;
   TextTable groups = NewTable("restoration by");
   const BodySummary& restored = found->second;
   const std::map by_key(restored.by.begin(), restored.by.end());
   for (const auto& [key, means] : by_key) {
     for (const auto& [name, mean] : means) groups.Add(Row(name, mean));
   }
-  text += groups.ToString() + WithoutLabelText(restored.without_label);
+  std::string failures;
   for (const BodyScore& score : restored.recordings) {
-    if (!score.failure.empty()) text += score.id + ": " + score.failure + "\n";
+    if (!score.failure.empty()) failures += score.id + ": " + score.failure + "\n";
   }
-  return text;
+  return text + "\n" + groups.ToString() +
+         TextLines(WithoutLabelText(restored.without_label) + failures);
 }
 
 double FootSkate(const BodyMotion& motion, int first_frame) {

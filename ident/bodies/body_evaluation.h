@@ -120,7 +120,9 @@ void AddBodyJson(const BodyEvaluation& evaluation, nlohmann::ordered_json* json)
 
 nlohmann::ordered_json ToJson(const BodySummary& summary, bool with_recordings);
 
-// A row per predictor, a column per metric; then the restoration by label.
+// A row per predictor, a column per metric.
+TextTable BodyTable(const BodyEvaluation& evaluation);
+// That, then the restoration by label.
 std::string BodyText(const BodyEvaluation& evaluation);
 // Errors up to fixed times (kTimedErrors), a row per predictor.
 std::string TimedErrorsText(const BodyEvaluation& evaluation);

@@ -6,6 +6,7 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/fit/fit.h"
+#include "ident/problem/behaviour.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/report/advice.h"
 #include "ident/report/report_text.h"
@@ -148,14 +149,28 @@ MaybeError AddChecks(const std::vector<PendulumRecording>& recordings, const Mod
   return std::nullopt;
 }
 
-Result<std::string> CheckSections(const std::vector<PendulumRecording>& recordings,
-                                  const ModelChecks& checks, const FitResult& fit) {
-  std::string text;
-  if (checks.learn_forecasts && fit.forecasts) text = "\n" + ForecastText(*fit.forecasts);
-  if (checks.design.empty()) return text;
-  const Result<std::string> design = DesignText(DesignExperiments(recordings, fit), checks.design);
+Result<Screen> CheckScreen(const std::vector<PendulumRecording>& recordings,
+                           const ModelChecks& checks, const FittedModel& model) {
+  Screen screen = ScreenOf(model);
+  screen.verdict.clear(), screen.tables.clear(), screen.paragraphs.clear();
+  if (checks.bootstrap.replicas > 0 && model.bootstrap) {
+    screen.verdict = Capitalized(ResamplingText(*model.bootstrap)) + ".";
+  }
+  if (!checks.profile.empty() || checks.bootstrap.replicas > 0) {
+    screen.tables = {IntervalTable(model)};
+  }
+  if (checks.horizon_check && model.horizon_check) {
+    screen.paragraphs.push_back(DriftText(*model.horizon_check));
+  }
+  if (checks.learn_forecasts && model.fit.forecasts) {
+    screen.paragraphs.push_back(ForecastText(*model.fit.forecasts));
+  }
+  if (checks.design.empty()) return screen;
+  const Result<std::string> design =
+      DesignText(DesignExperiments(recordings, model.fit), checks.design);
   if (!design.ok()) return Error{"--design: " + design.error().message};
-  return text + "\n" + design.value();
+  screen.paragraphs.push_back(design.value());
+  return screen;
 }
 
 MaybeError AddProfiles(const std::vector<PendulumRecording>& recordings,

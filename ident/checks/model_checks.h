@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "ident/figures/screen.h"
 #include "ident/model/fitted_model.h"
 
 namespace pushid {
@@ -47,9 +48,9 @@ MaybeError AddChecks(const std::vector<PendulumRecording>& recordings, const Mod
                      const std::function<JobProgress(const std::string&)>& progress,
                      FittedModel* model);
 
-// The text of forecasts and design; empty where neither was asked for.
-Result<std::string> CheckSections(const std::vector<PendulumRecording>& recordings,
-                                  const ModelChecks& checks, const FitResult& fit);
+// What the checks found, with forecasts and design, which the model does not keep.
+Result<Screen> CheckScreen(const std::vector<PendulumRecording>& recordings,
+                           const ModelChecks& checks, const FittedModel& model);
 
 // Single checks of a model that came from Fit of these very recordings.
 MaybeError AddProfiles(const std::vector<PendulumRecording>& recordings,

@@ -264,8 +264,6 @@ Warnings FitWarnings(const FitProblem& problem, const FitResult& result) {
                           SettlingSimulationName(*d, SettingsDiffer(result.behaviour)) + ")");
   }
   for (std::string& text : MassTexts(problem.recordings())) warnings.emplace_back(std::move(text));
-  AddClusterWarning(result.uncertainty, &warnings);
-  AddLineUpWarning(problem, &warnings);
   AddSettlingWarning(result.uncertainty, model, problem.map().fitted.size(), &warnings);
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kAtBound) warnings.emplace_back(e.name + " is at its bound");
@@ -276,6 +274,8 @@ Warnings FitWarnings(const FitProblem& problem, const FitResult& result) {
         "every push is external (measured completely): the push tail has no effect; set push_kind "
         "to net in the manifest for pushes that were measured only in part");
   }
+  AddClusterWarning(result.uncertainty, &warnings);
+  AddLineUpWarning(problem, &warnings);
   return warnings;
 }
 

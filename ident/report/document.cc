@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
+#include "ident/figures/screen.h"
 #include "ident/figures/svg.h"
 
 namespace pushid {
@@ -67,48 +67,17 @@ constexpr char kPageScript[] = R"js(
 })();
 )js";
 
-constexpr size_t kMostRowsInText = 60;
-
-// Numbers as people read them; words stay.
-std::string ForReading(const std::string& cell) {
-  double value = 0.0;
-  return ParseDouble(cell, &value) ? Rounded(value, 4) : cell;
-}
-
-// A figure's numbers where they fit on a terminal; otherwise the file that has them.
-std::string FigureText(const ReportFigure& figure) {
-  const auto& rows = figure.numbers.rows();
-  std::string text = figure.caption + (figure.caption.empty() ? "" : "\n");
-  if (rows.size() > kMostRowsInText) {
-    return text + "  (" + std::to_string(rows.size() - 1) + " rows: --figures_out writes them to " +
-           figure.name + ".csv)\n";
-  }
-  TextTable table(rows[0]);
-  for (size_t i = 1; i < rows.size(); ++i) {
-    std::vector<std::string> cells;
-    for (const std::string& cell : rows[i]) cells.push_back(ForReading(cell));
-    table.Add(cells);
-  }
-  return text + table.ToString();
-}
-
 std::string SectionText(const ReportSection& section) {
-  std::string text = section.alarm.empty() ? "" : section.alarm + "\n";
-  for (std::string paragraph : section.paragraphs) {
-    while (!paragraph.empty() && paragraph.back() == '\n') paragraph.pop_back();
-    if (!paragraph.empty()) text += paragraph + "\n";
-  }
+  std::string text = TextLines(section.alarm);
+  for (const std::string& paragraph : section.paragraphs) text += TextLines(paragraph);
   for (const auto& [sentence, command] : section.advice) {
-    text += "advice: " + sentence + "\n";
-    if (!command.empty()) text += "  " + command + "\n";
+    text += TextLines("advice: " + sentence) + CommandLines(command);
   }
   for (const ReportTable& table : section.tables) {
     if (table.table.empty()) continue;
-    text += (text.empty() ? "" : "\n") + (table.caption.empty() ? "" : table.caption + "\n") +
-            table.table.ToString();
+    text += (text.empty() ? "" : "\n") + TextLines(table.caption) + table.table.ToString();
   }
-  for (const ReportFigure& figure : section.figures) text += "\n" + FigureText(figure);
-  for (const ReportFold& fold : section.folds) text += fold.title + "\n";
+  for (const ReportFold& fold : section.folds) text += TextLines(fold.title);
   if (text.empty()) return "";
   return section.title + "\n" + std::string(section.title.size(), '=') + "\n" + text + "\n";
 }
@@ -143,8 +112,10 @@ std::string CsvOf(const TextTable& table) {
 }
 
 std::string ToText(const Report& report) {
-  std::string text = report.title + "\n" + report.subtitle + "\n\n";
-  for (const ReportSection& section : report.sections) text += SectionText(section);
+  std::string text = TextLines(report.title) + TextLines(report.subtitle) + "\n";
+  for (const ReportSection& section : report.sections) {
+    if (section.id != "provenance") text += SectionText(section);
+  }
   return text;
 }
 

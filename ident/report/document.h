@@ -57,10 +57,8 @@ struct Report {
   std::vector<ReportSection> sections;
 };
 
-// A report for a terminal, and the numbers behind its figures as CSV files.
-
-// A report for a terminal: all sentences and tables; of a figure its caption and numbers, or the
-// name of their file.
+// A report for a terminal: all sentences and tables, in lines of at most 100 columns. Figures,
+// flags and hashes are for the page and for files.
 std::string ToText(const Report& report);
 
 // Rows of a table; fields with a comma or a quote are quoted.

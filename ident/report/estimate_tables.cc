@@ -79,11 +79,11 @@ double ShownEnd(double value, double end, double other_end) {
   return wide && factor < 1.0 / kOpenFactor ? open : end;
 }
 
-std::string IntervalText(double value, double lower, double upper) {
+std::string IntervalText(double value, double lower, double upper, int digits) {
   const double from = ShownEnd(value, lower, upper), to = ShownEnd(value, upper, lower);
   if (!std::isfinite(from) && !std::isfinite(to)) return kUndetermined;
-  const auto side = [](double end) {
-    return std::isfinite(end) ? Rounded(end, 4) : std::string("open");
+  const auto side = [digits](double end) {
+    return std::isfinite(end) ? Rounded(end, digits) : std::string("open");
   };
   return "[" + side(from) + ", " + side(to) + "]";
 }
@@ -97,6 +97,38 @@ std::string GainsText(const FitResult& result) {
     }
   }
   return text.empty() ? "" : Capitalized(text) + ".";
+}
+
+std::string BalanceText(const FitResult& result) {
+  const Verdict verdict = VerdictOf(result.behaviour, result.options.model);
+  if (verdict == Verdict::kSettles) return "";
+  return Capitalized(VerdictSentence(verdict, result.behaviour, result.options.model)) +
+         (result.behaviour.self_propelling ? ": do not use the gains." : ".");
+}
+
+TextTable ShortTable(const FitResult& result) {
+  constexpr size_t kMost = 10;  // in the model's order
+  std::vector<const Estimate*> free;
+  for (const Estimate& e : result.estimates) {
+    if (e.status != EstimateStatus::kFixed) free.push_back(&e);
+  }
+  if (free.size() > kMost) {
+    std::stable_partition(free.begin(), free.end(), [](const Estimate* e) {
+      return e->status != EstimateStatus::kPriorHeld;
+    });
+    std::stable_partition(free.begin(), free.end(), [](const Estimate* e) {
+      return e->status == EstimateStatus::kIdentified;
+    });
+  }
+  TextTable table({"parameter", ">value", "95 % interval", "unit", "status"});
+  for (const Estimate* e : free) {
+    const Interval shown = e->interval();
+    const bool known = e->status != EstimateStatus::kUnidentifiable && shown.standard_error > 0.0;
+    table.Add({e->name, Rounded(e->value, 3),
+               known ? IntervalText(e->value, shown.lower, shown.upper, 3) : "-", e->unit,
+               NameOf(e->status)});
+  }
+  return table;
 }
 
 TextTable EstimateTable(const FitResult& result) {
@@ -208,8 +240,8 @@ std::string SharperText(const FitResult& result) {
 }
 
 TextTable PartsTable(const FitResult& result) {
-  TextTable table({"parameter", ">value", ">std error", "95 % interval", ">by the data alone",
-                   "95 %", ">of these people alone", "95 %", "unit", "widened most by"});
+  TextTable table({"parameter", ">by the data alone", "95 %", ">of these people alone", "95 %",
+                   "unit", "widened most by"});
   const auto add = [&](const auto& row) {
     if (!row.total && !row.these) return;
     const auto cells =
@@ -217,10 +249,9 @@ TextTable PartsTable(const FitResult& result) {
       if (!i || !(i->standard_error > 0.0)) return {"-", "-"};
       return {Rounded(i->standard_error, 3), IntervalText(row.value, i->lower, i->upper)};
     };
-    const auto all = cells(row.interval()), these = cells(row.these);
     const auto own = cells(Interval{row.standard_error, row.lower95, row.upper95});
-    table.Add({row.name, Rounded(row.value, 4), all.first, all.second, own.first, own.second,
-               these.first, these.second, row.unit,
+    const auto these = cells(row.these);
+    table.Add({row.name, own.first, own.second, these.first, these.second, row.unit,
                WidenedBy(result, row.name, row.interval().standard_error)});
   };
   for (const Estimate& e : result.estimates) {
@@ -396,19 +427,6 @@ std::string CorrelationText(const FitResult& result) {
 std::string BehaviourText(const FitResult& result) {
   const Behaviour& b = result.behaviour;
   return SettlingText(b, result.options.model) + NoFartherText(b) + FreeModeText(b);
-}
-
-TextTable LinesTable(const FitResult& result) {
-  TextTable table = TextTable::OfNumbers(
-      {"line pushed forwards, " + WaitText(result.options.model) + " later", "mean advance, m",
-       "advance of pushed person, m", "mean displacement, m"});
-  const bool differ = SettingsDiffer(result.behaviour);
-  for (const SettlingSimulation& d : result.behaviour.simulations) {
-    if (d.people == 1) continue;
-    table.Add({SettlingSimulationName(d, differ), Rounded(d.advance, 2),
-               Rounded(d.pushed_advance, 2), Rounded(d.distance, 2)});
-  }
-  return table;
 }
 
 namespace {

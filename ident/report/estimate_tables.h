@@ -14,8 +14,11 @@ namespace pushid {
 // factor of more than 100 away, or with an interval over four orders of magnitude).
 double ShownEnd(double value, double end, double other_end);
 // "[20, 42]", "[20, open]"; "undetermined" where both ends are open.
-std::string IntervalText(double value, double lower, double upper);
+std::string IntervalText(double value, double lower, double upper, int digits = 4);
 
+// Values of the free parameters and the intervals that decide; of many, those first that the
+// recordings tell something of.
+TextTable ShortTable(const FitResult& result);
 TextTable EstimateTable(const FitResult& result);
 // The meaning of the table's columns of shares and shifts.
 std::string SharesNote();
@@ -35,6 +38,8 @@ std::string SharperText(const FitResult& result);
 std::string ConventionText(const FitResult& result);
 // "Ankle stiffness 1.6 times m g l (1 is just enough to hold a pendulum upright), ..."
 std::string GainsText(const FitResult& result);
+// Why the fitted person does not come to rest; empty of one who does.
+std::string BalanceText(const FitResult& result);
 // Pairs of parameters that the data separate poorly.
 std::string CorrelationText(const FitResult& result);
 
@@ -46,8 +51,6 @@ TextTable SpreadTable(const FitResult& result);
 // What people do after a push, in words and settling simulation by settling simulation.
 std::string BehaviourText(const FitResult& result);
 TextTable BehaviourTable(const FitResult& result);
-// Where lines of people who touch end up that are pushed forwards at their first person.
-TextTable LinesTable(const FitResult& result);
 
 // The difference between two values of a label; below it who is compared with whom, whether effects
 // are in standard deviations, and Holm's correction.

@@ -19,77 +19,6 @@
 namespace pushid {
 namespace {
 
-constexpr size_t kNamed = 4;  // parameters of a sentence; the table below has all
-
-// "mu = 31.3 N s/m (20 to 42)", with the interval where there is one.
-std::string ValueText(const Estimate& e) {
-  std::string text = e.name + " = " + Rounded(e.value, 3) + (e.unit == "1" ? "" : " " + e.unit);
-  if (e.lower95 < e.upper95) {
-    const Interval i = e.interval();
-    const double from = ShownEnd(e.value, i.lower, i.upper);
-    const double to = ShownEnd(e.value, i.upper, i.lower);
-    text += std::isfinite(from) && std::isfinite(to)
-                ? " (" + Rounded(from, 3) + " to " + Rounded(to, 3) + ")"
-            : std::isfinite(from) ? " (above " + Rounded(from, 3) + ")"
-            : std::isfinite(to)   ? " (below " + Rounded(to, 3) + ")"
-                                  : " (undetermined)";
-  }
-  return text;
-}
-
-std::vector<const Estimate*> With(const FitResult& result, EstimateStatus status) {
-  std::vector<const Estimate*> found;
-  for (const Estimate& e : result.estimates) {
-    if (e.status == status) found.push_back(&e);
-  }
-  return found;
-}
-
-std::string Listed(const std::vector<const Estimate*>& estimates) {
-  std::string text;
-  for (size_t i = 0; i < std::min(kNamed, estimates.size()); ++i) {
-    text += (i > 0 ? ", " : "") + ValueText(*estimates[i]);
-  }
-  const size_t more = estimates.size() - std::min(kNamed, estimates.size());
-  return text + (more > 0 ? " and " + std::to_string(more) + " more" : "");
-}
-
-std::string Known(const FitResult& result) {
-  const std::vector<const Estimate*> known = With(result, EstimateStatus::kIdentified);
-  const Verdict verdict = VerdictOf(result.behaviour, result.options.model);
-  return "What is known: " +
-         (known.empty() ? "these recordings alone identify no parameter"
-                        : "these recordings identify " + Listed(known)) +
-         "; " + VerdictSentence(verdict, result.behaviour, result.options.model) + "." +
-         (result.behaviour.self_propelling ? " Do not use the gains." : "") +
-         (known.empty() ? "" : " In brackets: 95 % intervals.");
-}
-
-std::string NotKnown(const FitResult& result) {
-  std::string text;
-  const auto add = [&](EstimateStatus status, const std::string& words) {
-    const std::vector<const Estimate*> found = With(result, status);
-    if (!found.empty()) text += (text.empty() ? "" : "; ") + words + Listed(found);
-  };
-  add(EstimateStatus::kUnidentifiable, "not identifiable from these recordings: ");
-  add(EstimateStatus::kAtBound, "ended at a bound: ");
-  add(EstimateStatus::kPriorHeld,
-      "determined more by priors or constraints than by the recordings: ");
-  add(EstimateStatus::kModelDependent, "dependent on a model that does not fit: ");
-  add(EstimateStatus::kWeak, "with wide intervals: ");
-  const Uncertainty& u = result.uncertainty;
-  const std::string join = text.empty() ? "" : "; ";
-  if (u.about_people_like_them && u.num_people < kFewestPeople) {
-    text += join + "anything about people like these " + std::to_string(u.num_people) +
-            ", who are fewer than " + std::to_string(kFewestPeople);
-  } else if (u.clustered && u.num_clusters < kFewClusters) {
-    text += join + "with " + std::to_string(u.num_clusters) +
-            (u.clustered_by == ClusterBy::kSubject ? " people" : " recordings") +
-            " all intervals are rough";
-  }
-  return "What is not known: " + (text.empty() ? "no free parameter" : text) + ".";
-}
-
 std::string Next(const FittedModel& model) {
   if (model.advice.empty()) return "What to do next: predict a push that was not fitted.";
   return "What to do next: " + model.advice.front().sentence;
@@ -123,11 +52,11 @@ double MeanExplained(const FitResult& result) {
 
 ReportSection ShortSection(const FittedModel& model, const std::string& more) {
   ReportSection section{"short", "In short"};
-  section.Say(Known(model.fit));
-  section.Say(NotKnown(model.fit));
   section.Say(GainsText(model.fit));
+  section.Say(BalanceText(model.fit));
   section.Say(more);
   section.Say(Next(model));
+  section.Show("", ShortTable(model.fit));
   section.Show("what the names mean", Legend(model.fit));
   return section;
 }
@@ -163,13 +92,16 @@ ReportSection SummarySection(const FittedModel& model) {
   }
   if (model.fit.likelihood) section.Say(LikelihoodText(model.fit));
   section.Say(PreparationText(model.provenance.configuration));
-  for (const std::string& warning : GroupedWarnings(model.fit.warnings)) {
-    section.Say("Warning: " + warning);
-  }
-  for (const std::string& finding : FindingTexts(model.fit.diagnostics.start.findings)) {
-    section.Say("Warning: " + finding);
-  }
+  for (const std::string& warning : WarningTexts(model.fit)) section.Say("Warning: " + warning);
   return section;
+}
+
+std::vector<std::string> WarningTexts(const FitResult& result) {
+  std::vector<std::string> texts = GroupedWarnings(result.warnings);
+  for (const std::string& finding : FindingTexts(result.diagnostics.start.findings)) {
+    texts.push_back(finding);
+  }
+  return texts;
 }
 
 ReportSection AdviceSection(const FittedModel& model) {
@@ -187,7 +119,6 @@ ReportSection BehaviourSection(const FittedModel& model) {
   ReportSection section{"behaviour", "After a push"};
   section.paragraphs = {BehaviourText(model.fit)};
   if (model.fit.step_probability) section.Say(StepProbabilityText(*model.fit.step_probability));
-  section.Show("", LinesTable(model.fit));
   section.tables.push_back(
       {"settling simulations: pushed and left alone", BehaviourTable(model.fit)});
   return section;

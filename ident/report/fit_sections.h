@@ -9,9 +9,11 @@
 namespace pushid {
 
 // A section with nothing to say is empty and left out.
-// What is known, what is not, and what to do next; more: a paragraph before that.
+// Gains, what to do next and the values; more: a paragraph before what to do.
 ReportSection ShortSection(const FittedModel& model, const std::string& more = "");
 ReportSection SummarySection(const FittedModel& model);
+// What it warns of: the fit's warnings, then findings about the recordings.
+std::vector<std::string> WarningTexts(const FitResult& result);
 ReportSection BehaviourSection(const FittedModel& model);
 ReportSection LoopSection(const FittedModel& model);
 ReportSection RecordingSection(const FittedModel& model);

@@ -8,9 +8,9 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/parameters/fit_options.h"
-#include "ident/report/document.h"
+#include "ident/problem/behaviour.h"
+#include "ident/report/advice.h"
 #include "ident/report/fit_sections.h"
-#include "ident/report/parameter_sections.h"
 #include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/model_verdict.h"
 
@@ -132,7 +132,7 @@ namespace {
 constexpr int kFewUnits = 5;  // of fewer a bootstrap has too few distinct resamples
 
 std::string OrDash(double value, const std::optional<Interval>& interval) {
-  return interval ? IntervalText(value, interval->lower, interval->upper) : "-";
+  return interval ? IntervalText(value, interval->lower, interval->upper, 3) : "-";
 }
 
 }  // namespace
@@ -154,7 +154,7 @@ std::optional<Interval> BootstrapInterval(const FittedModel& model, const std::s
 }
 
 TextTable IntervalTable(const FittedModel& model) {
-  TextTable table({"95 % intervals", ">value", "clustered", "profile", "bootstrap", "unit", "class",
+  TextTable table({"95 % intervals", ">value", "clustered", "profile", "bootstrap", "class",
                    "by the data alone"});
   const auto add = [&](const auto& row) {
     const auto profile = ProfileInterval(model, row.name);
@@ -166,9 +166,9 @@ TextTable IntervalTable(const FittedModel& model) {
       classification = NameOf(p.classification);
       if (p.by_data_alone) by_data_alone = NameOf(*p.by_data_alone);
     }
-    table.Add({row.name, Rounded(row.value, 4), IntervalText(row.value, row.lower95, row.upper95),
-               OrDash(row.value, profile), OrDash(row.value, bootstrap), row.unit, classification,
-               by_data_alone});
+    table.Add({WithUnit(row.name, row.unit), Rounded(row.value, 3),
+               IntervalText(row.value, row.lower95, row.upper95, 3), OrDash(row.value, profile),
+               OrDash(row.value, bootstrap), classification, by_data_alone});
   };
   for (const Estimate& e : model.fit.estimates) {
     if (e.status != EstimateStatus::kFixed) add(e);
@@ -220,34 +220,29 @@ std::string WorseThanStaticText(const std::vector<RecordingDiagnostics>& recordi
 
 }  // namespace
 
-std::string FirstSentences(const FitResult& result) {
+std::string FirstSentences(const FitResult& result, bool brief) {
   const std::string worse = WorseThanStaticText(result.diagnostics.recordings);
-  return worse + ModelVerdictText(result.verdict, !worse.empty());
+  return worse + ModelVerdictText(result.verdict, !worse.empty(), brief);
 }
 
-std::string ReportText(const FittedModel& model) {
+Screen ScreenOf(const FittedModel& model) {
   const FitResult& result = model.fit;
   const Provenance& from = model.provenance;  // empty where no program fitted
-  Report report;
-  report.title = (from.version.empty() ? "pushid" : "pushid " + from.version) + ", preset " +
+  Screen screen;
+  screen.title = (from.version.empty() ? "pushid" : "pushid " + from.version) + ", preset " +
                  result.options.preset + ": " + CountText(result.recordings.size(), "recording") +
                  (from.setting.empty() ? "" : " (" + from.setting + ")");
-  report.subtitle = FirstSentences(result);
-  report.sections = {ShortSection(model)};
-  for (const auto section :
-       {SummarySection, ParameterSection, ContrastSection, UnitSection, IdentifiabilitySection,
-        ProfileSection, BootstrapSection, HorizonCheckSection, BehaviourSection, LoopSection,
-        RecordingSection, AdviceSection}) {
-    report.sections.push_back(section(model));
+  screen.verdict =
+      (result.converged ? "" : "The solve did NOT converge. ") + FirstSentences(result, true);
+  screen.tables = {ShortTable(result)};
+  screen.paragraphs = {GainsText(result), BalanceText(result)};
+  screen.warnings = WarningTexts(result);
+  if (!model.advice.empty()) {
+    screen.next = {model.advice.front().sentence, CommandFor(from, model.advice.front().command)};
   }
-  for (ReportSection& shown : report.sections) {
-    shown.figures.clear();
-    // Tables that the page folds are left out.
-    shown.tables.erase(std::remove_if(shown.tables.begin(), shown.tables.end(),
-                                      [](const auto& table) { return !table.caption.empty(); }),
-                       shown.tables.end());
-  }
-  return ToText(report);
+  screen.rest = "the rest: --details; a page: pushid-report --html_out; all numbers: " +
+                (from.model_file.empty() ? "--model_out" : from.model_file);
+  return screen;
 }
 
 namespace {
@@ -353,10 +348,10 @@ std::vector<const AssumptionTest*> Suspects(const ModelVerdict& v) {
   return {};
 }
 
-std::string FailureText(const ModelVerdict& v) {
-  std::string text;
-  const auto add = [&text](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
-  for (const std::string& finding : v.of_pushes) add(finding);
+// What contradicts the model, one finding each.
+std::vector<std::string> Contradictions(const ModelVerdict& v) {
+  std::vector<std::string> found = v.of_pushes;
+  const auto add = [&found](const std::string& what) { found.push_back(what); };
   const std::vector<const AssumptionTest*> wanted = Suspects(v);
   if (!wanted.empty()) {
     const Remedy* const remedy = FindRemedy(*wanted.front());
@@ -371,7 +366,7 @@ std::string FailureText(const ModelVerdict& v) {
   if (part != nullptr && v.p_parts < kVerdictLevel) {
     add(part->part + " ask for another " + part->parameter + " than all of them (p = " +
         Rounded(v.p_parts, 2) + " after " + std::to_string(v.parts.size()) + " tests)");
-    if (part->part == kFromTheSide) text += "; try --directions=body";
+    if (part->part == kFromTheSide) found.back() += "; try --directions=body";
   }
   const MotionTest* motion = Surest(v.motion.tests);
   if (motion != nullptr && v.p_motion < kVerdictLevel) {
@@ -384,14 +379,27 @@ std::string FailureText(const ModelVerdict& v) {
     add("it explains " + Rounded(100.0 * v.motion.explained, 2) +
         " % of the hip's squared displacement in the median recording");
   }
-  return text;
+  return found;
 }
 
-std::string CheckText(const ModelVerdict& v, bool more) {
+std::string CheckText(const ModelVerdict& v, bool more, bool brief) {
   if (!v.checked()) return "The model was not checked: " + v.not_checked + ".";
   if (v.fails()) {
-    return "The model does not fit these recordings: " + FailureText(v) +
+    const std::vector<std::string> found = Contradictions(v);
+    const std::string rest = std::to_string(found.size() - std::min<size_t>(1, found.size()));
+    const bool cut = brief && found.size() > 1;
+    return "The model does not fit these recordings: " +
+           (cut ? found.front() + "; " + rest + " more by --details" : Joined(found, "; ")) +
            ". Nothing is called identified.";
+  }
+  const std::string explains =
+      std::isnan(v.motion.explained)
+          ? std::string("the motion was not recorded.")
+          : "the model explains " + Rounded(100.0 * v.motion.explained, 3) +
+                " % of the hip's squared displacement in the median recording.";
+  if (brief) {
+    return std::string("The model check found no ") + (more ? "other " : "") + "contradiction; " +
+           explains;
   }
   return std::string("The model check found no ") + (more ? "other " : "") +
          "contradiction: " + std::to_string(v.NumTested()) +
@@ -411,10 +419,10 @@ std::string CheckText(const ModelVerdict& v, bool more) {
 
 }  // namespace
 
-std::string ModelVerdictText(const ModelVerdict& v, bool more) {
+std::string ModelVerdictText(const ModelVerdict& v, bool more, bool brief) {
   const std::string none =
       v.none_identified.empty() ? "" : "Nothing is identified: " + v.none_identified + ". ";
-  return none + CheckText(v, more);
+  return none + CheckText(v, more, brief);
 }
 
 std::string StatedErrorKey(const AssumptionTest& test) {

@@ -1,4 +1,4 @@
-// ident: a fit's result for a terminal: the sections of the page that need no recordings.
+// ident: a fit's result in words, and the screen that a terminal shows first.
 #pragma once
 
 #include <map>
@@ -6,6 +6,7 @@
 #include <string>
 
 #include "datasets/files/error.h"
+#include "ident/figures/screen.h"
 #include "ident/figures/text_table.h"
 #include "ident/model/fitted_model.h"
 #include "ident/model/identified_model.h"
@@ -13,12 +14,13 @@
 
 namespace pushid {
 
-// What standing still predicts better, if anything, and the verdict on the model.
-std::string FirstSentences(const FitResult& result);
+// What standing still predicts better, if anything, and the verdict on the model; brief: without
+// the numbers of its tests, and with its first finding alone.
+std::string FirstSentences(const FitResult& result, bool brief = false);
 
-// The first sentences, then the sections of fit_sections.h and parameter_sections.h without figures
-// and without the tables that the page folds (pushid-report --details prints those too).
-std::string ReportText(const FittedModel& model);
+// What a fit says first: verdict, values, gains, warnings, and the first advice. Everything else is
+// in BuildReport of page/build_report.h.
+Screen ScreenOf(const FittedModel& model);
 
 // The learned terms: "rod mlp:2 (26 weights, prior 1)"; empty where nothing is learned.
 std::string NetworkText(const FitResult& result);
@@ -52,7 +54,7 @@ std::string ResamplingText(const Bootstrap& bootstrap);
 
 // "The model check found no contradiction: ...", or "The model does not fit these recordings: ..."
 // with what to check or to try, or why nothing was checked. more: than was said before it.
-std::string ModelVerdictText(const ModelVerdict& verdict, bool more = false);
+std::string ModelVerdictText(const ModelVerdict& verdict, bool more = false, bool brief = false);
 
 // Its name among a manifest's stated_errors; empty of what the laboratory does not measure.
 std::string StatedErrorKey(const AssumptionTest& test);

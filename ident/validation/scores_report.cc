@@ -95,17 +95,29 @@ std::string BandsText(const std::string& name, const ScoreSummary& summary) {
          text(kInside50 + 1) + "; CRPS " + text(kCrps) + " m\n";
 }
 
+// A row of means of predictors; errors: of all, not of the first alone.
+std::vector<std::string> MeansRow(const std::string& name, const std::vector<MeanScore>& means,
+                                  const MetricList& shown, bool errors) {
+  std::vector<std::string> row = {name, std::to_string(means[0].recordings)};
+  for (size_t i = 0; i < means.size(); ++i) {
+    const bool known = means[i].recordings > 0;
+    row.push_back(errors || i == 0 ? MeanText(means[i], shown)
+                                   : Joined(PlainCells(means[i].value, shown, known), " / "));
+  }
+  return row;
+}
+
+// only: by this label alone; empty: by all.
 void AddGroups(const std::vector<const ScoreSummary*>& summaries, const MetricList& shown,
-               TextTable* table) {
+               bool errors, const std::string& only, TextTable* table) {
   for (const auto& [key, groups] : summaries[0]->by) {
-    if (groups.size() < 2) continue;
-    for (const auto& [name, mean] : groups) {
-      std::vector<std::string> row = {GroupTitle(key, *summaries[0]) + name,
-                                      std::to_string(mean.recordings)};
+    if (groups.size() < 2 || (!only.empty() && key != only)) continue;
+    for (const auto& group : groups) {
+      std::vector<MeanScore> means;
       for (const ScoreSummary* one : summaries) {
-        row.push_back(MeanText(MeanOfGroup(one->by.at(key), name), shown));
+        means.push_back(MeanOfGroup(one->by.at(key), group.first));
       }
-      table->Add(row);
+      table->Add(MeansRow(GroupTitle(key, *summaries[0]) + group.first, means, shown, errors));
     }
   }
 }
@@ -129,46 +141,77 @@ std::string CountsText(double part, double whole) {
 
 }  // namespace
 
-std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
-  std::string text;
-  const MetricList shown = TableMetrics(evaluation.model.observed);
-  if (per_recording) {
-    std::vector<std::string> header = {"recording", ">frames"};
-    Append(Titles(shown), &header);
-    for (const BaselineSummary& baseline : evaluation.baselines) {
-      header.push_back(">" + baseline.name);
-    }
-    header.push_back("");
-    TextTable table(header);
-    for (size_t i = 0; i < evaluation.model.recordings.size(); ++i) {
-      const RecordingScore& r = evaluation.model.recordings[i];
-      std::vector<std::string> row = {r.id, std::to_string(r.frames)};
-      Append(PlainCells(r.value, shown, r.failure.empty()), &row);
-      for (const BaselineSummary& baseline : evaluation.baselines) {
-        row.push_back(PlainCells(baseline.summary.recordings[i].value, shown)[0]);
-      }
-      row.push_back(r.failure);
-      table.Add(row);
-    }
-    text += table.ToString() + "\n";
-  }
+namespace {
+
+// Means of the model and of the baselines; all: weighted by frames too, and by every label.
+TextTable MeansTable(const Evaluation& evaluation, bool all) {
   const ScoreSummary& m = evaluation.model;
+  const MetricList shown = TableMetrics(m.observed);
   std::vector<std::string> header = {NamesText(shown), ">recordings", "model"};
-  std::vector<const ScoreSummary*> all = {&m};
+  std::vector<const ScoreSummary*> summaries = {&m};
   for (const BaselineSummary& baseline : evaluation.baselines) {
     header.push_back(baseline.name);
-    all.push_back(&baseline.summary);
+    summaries.push_back(&baseline.summary);
   }
   TextTable table(header);
   for (const auto& [name, mean] : {std::pair("mean over recordings", &ScoreMeans::mean),
                                    {"frame-weighted", &ScoreMeans::frame_weighted}}) {
-    std::vector<std::string> row = {name, std::to_string((m.*mean).recordings)};
-    for (const ScoreSummary* one : all) row.push_back(MeanText(one->*mean, shown));
+    std::vector<MeanScore> means;
+    for (const ScoreSummary* one : summaries) means.push_back(one->*mean);
+    if (all || mean == &ScoreMeans::mean) table.Add(MeansRow(name, means, shown, false));
+  }
+  const bool strengths = m.by.count(kMagnitudeLabel) > 0;
+  const std::string first = strengths ? kMagnitudeLabel : m.by.empty() ? "" : m.by.begin()->first;
+  AddGroups(summaries, shown, false, all ? "" : first, &table);
+  return table;
+}
+
+TextTable RecordingsTable(const Evaluation& evaluation) {
+  const MetricList shown = TableMetrics(evaluation.model.observed);
+  std::vector<std::string> header = {"recording", ">frames"};
+  Append(Titles(shown), &header);
+  for (const BaselineSummary& baseline : evaluation.baselines) {
+    header.push_back(">" + baseline.name);
+  }
+  header.push_back("");
+  TextTable table(header);
+  for (size_t i = 0; i < evaluation.model.recordings.size(); ++i) {
+    const RecordingScore& r = evaluation.model.recordings[i];
+    std::vector<std::string> row = {r.id, std::to_string(r.frames)};
+    Append(PlainCells(r.value, shown, r.failure.empty()), &row);
+    for (const BaselineSummary& baseline : evaluation.baselines) {
+      row.push_back(PlainCells(baseline.summary.recordings[i].value, shown)[0]);
+    }
+    row.push_back(r.failure);
     table.Add(row);
   }
-  AddGroups(all, shown, &table);
-  text += table.ToString() + WithoutLabelText(m.without_label) + ErrorsText(m) + ObservedText(m) +
-          BandsText("model", m);
+  return table;
+}
+
+// "The model's error is 0.49 times that of the best baseline (constant velocity)."
+std::string RatioText(const Evaluation& evaluation) {
+  const MetricId metric = TableMetrics(evaluation.model.observed).front();
+  const BaselineSummary* best = nullptr;
+  for (const BaselineSummary& baseline : evaluation.baselines) {
+    const MeanScore& mean = baseline.summary.mean;
+    if (mean.recordings == 0) continue;
+    if (best == nullptr || mean.value[metric] < best->summary.mean.value[metric]) best = &baseline;
+  }
+  if (evaluation.model.mean.recordings == 0) return "The model predicts no recording.";
+  if (best == nullptr) return "";
+  const double ratio = evaluation.model.mean.value[metric] / best->summary.mean.value[metric];
+  return "The model's error is " + Rounded(ratio, 2) + " times that of the best baseline (" +
+         best->name + ")" + (ratio < 1.0 ? "." : ": do not predict with it.");
+}
+
+}  // namespace
+
+std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
+  const ScoreSummary& m = evaluation.model;
+  std::string text = per_recording ? RecordingsTable(evaluation).ToString() + "\n" : "";
+  text += MeansTable(evaluation, true).ToString() +
+          TextLines(WithoutLabelText(m.without_label) + ErrorsText(m) + ObservedText(m) +
+                    BandsText("model", m));
   if (m.steps.known()) text += "\n" + StepScoresText({{"model", &m.steps}});
   if (m.propagation.recordings == 0) return text;
   std::vector<PropagationColumn> columns = {{"model", &m.propagation}};
@@ -178,6 +221,44 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   }
   columns.push_back({"constant velocity", &evaluation.Baseline("constant_velocity").propagation});
   return text + "\n" + PropagationText(columns);
+}
+
+Screen EvaluationScreen(const Evaluation& evaluation) {
+  const ScoreSummary& m = evaluation.model;
+  Screen screen{CountText(m.recordings.size(), "recording") + ", predicted and as recorded"};
+  screen.verdict = RatioText(evaluation);
+  screen.tables = {MeansTable(evaluation, false)};
+  screen.paragraphs = {ErrorsText(m), ObservedText(m), BandsText("model", m)};
+  if (m.steps.known()) {
+    screen.paragraphs.push_back("who steps: AUC " + Rounded(m.steps.auc, 3) + ", Brier score " +
+                                Rounded(m.steps.brier, 2));
+  }
+  const std::string travels = TravelText(m.propagation);
+  screen.paragraphs.push_back((travels.empty() ? "" : "how pushes travel: ") + travels);
+  Warnings failures;
+  for (const RecordingScore& r : m.recordings) {
+    if (!r.failure.empty()) failures.emplace_back(r.id + ": " + r.failure, r.id, r.failure);
+  }
+  screen.warnings = GroupedWarnings(failures);
+  screen.rest =
+      "the rest: --details; recordings and steps: --per_recording; all numbers: --json_out";
+  return screen;
+}
+
+std::string TravelText(const PropagationSummary& p) {
+  if (p.recordings == 0 || !p.figures[kSlownessMeasured].known()) return "";
+  std::string text = "in " + std::to_string(std::lround(p.figures[kSlownessMeasured].weight)) +
+                     " recordings the onset of motion propagated at " +
+                     SpeedText(p.figures[kSlownessMeasured]) +
+                     " m/s (predicted: " + SpeedText(p.figures[kSlownessPredicted]) + ")";
+  const PropagationMean &measured = p.figures[kMomentumMeasured],
+                        &predicted = p.figures[kMomentumPredicted];
+  if (measured.known() && predicted.known()) {
+    text += "; the momentum of each person was " + Rounded(measured.value, 2) +
+            " times that of the previous one (predicted: " + Rounded(predicted.value, 2) + ")";
+  }
+  return text + "; the model misses " + Rounded(p.missed_movers, 4) + " of the " +
+         Rounded(p.movers, 4) + " people who moved.";
 }
 
 std::string SpeedText(const PropagationMean& slowness) {
@@ -230,6 +311,10 @@ std::vector<std::string> FoldPropagationCells(const PropagationSummary& s) {
 
 namespace {
 
+double HalfInterval95(const PairedDifference& d) {
+  return StudentQuantile95(d.clusters - 1.0) * d.error[kHipAde];
+}
+
 // One honest sentence on two configurations: they differ where the 95 % interval of the difference
 // excludes zero.
 std::string ConclusionText(const PairedDifference& d) {
@@ -238,7 +323,7 @@ std::string ConclusionText(const PairedDifference& d) {
   const double change = d.value[kHipAde], error = d.error[kHipAde];
   const std::string by = Rounded(std::abs(change), 2) + " +- " + Rounded(error, 2) + " " +
                          metric.unit + " of " + metric.name;
-  const double half = StudentQuantile95(d.clusters - 1.0) * error;
+  const double half = HalfInterval95(d);
   const std::string interval = "95 % interval +- " + Rounded(half, 2) + " " + metric.unit + ": " +
                                ClustersText(d.clustered_by, d.clusters) + ", Student's t with " +
                                std::to_string(d.clusters - 1) + " degree" +
@@ -260,7 +345,7 @@ std::string HeldOutGroupsText(const std::vector<CrossValidation>& candidates,
     summaries.push_back(&candidate.summary);
   }
   TextTable table(header);
-  AddGroups(summaries, shown, &table);
+  AddGroups(summaries, shown, true, "", &table);
   return table.empty() ? "" : "\n" + table.ToString();
 }
 
@@ -310,16 +395,16 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
            &row);
     table.Add(row);
   }
-  text += table.ToString() + ErrorsText(candidates[0].summary) +
-          ObservedText(candidates[0].summary) +
-          "fell harder: when pushed 1.4 times as hard, until 40 frames past the recording's end\n";
+  std::string said =
+      ErrorsText(candidates[0].summary) + ObservedText(candidates[0].summary) +
+      "fell harder: when pushed 1.4 times as hard, until 40 frames past the recording's end\n";
   for (const CrossValidation& candidate : candidates) {
-    text += BandsText(candidate.predictor, candidate.summary);
+    said += BandsText(candidate.predictor, candidate.summary);
   }
   for (size_t i = 1; i < candidates.size(); ++i) {
-    text += ConclusionText(Compare(candidates[0], candidates[i])) + "\n";
+    said += ConclusionText(Compare(candidates[0], candidates[i])) + "\n";
   }
-  text += HeldOutGroupsText(candidates, shown);
+  text += table.ToString() + TextLines(said) + HeldOutGroupsText(candidates, shown);
   std::vector<std::pair<std::string, const StepScore*>> steps;
   for (const CrossValidation& candidate : candidates) {
     steps.emplace_back(candidate.predictor, &candidate.summary.steps);
@@ -335,6 +420,38 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   }
   return text + "\n" + PropagationText(columns) +
          (metrics.empty() ? "" : "\n" + GroupMetricsText(metrics));
+}
+
+Screen CrossValidationScreen(const std::vector<CrossValidation>& candidates) {
+  const CrossValidation& own = candidates.front();
+  const MetricList shown = TableMetrics(own.summary.observed);
+  Screen screen{CountText(own.summary.mean.recordings, "recording") + " in " +
+                CountText(own.folds.size(), "fold") + ", each predicted by fits without it"};
+  TextTable table({"held out", NamesText(shown),
+                   kMetrics[kHipAde].name + (" - " + own.predictor + ", 95 %"), ">failed",
+                   ">fell"});
+  const CrossValidation* rival = nullptr;  // the best of the others
+  for (const CrossValidation& one : candidates) {
+    const PairedDifference difference = Compare(own, one);
+    const bool compared = &one != &own && difference.recordings > 0;
+    if (compared && (rival == nullptr ||
+                     one.summary.mean.value[kHipAde] < rival->summary.mean.value[kHipAde])) {
+      rival = &one;
+    }
+    table.Add({one.predictor, MeanText(one.summary.mean, shown),
+               compared ? Rounded(difference.value[kHipAde], 2) + " +- " +
+                              Rounded(HalfInterval95(difference), 2)
+                        : "",
+               std::to_string(one.failures), std::to_string(one.falls)});
+  }
+  if (rival != nullptr) screen.verdict = ConclusionText(Compare(own, *rival));
+  screen.tables = {table};
+  screen.paragraphs = {ErrorsText(own.summary), ObservedText(own.summary)};
+  for (const CrossValidation& one : candidates) {
+    screen.paragraphs.push_back(BandsText(one.predictor, one.summary));
+  }
+  screen.rest = "the rest: --details; all numbers: --json_out";
+  return screen;
 }
 
 void Fields(JsonWriter& a, StepFifth& f) { PUSHID_FIELDS(a, f, tracks, predicted, observed); }

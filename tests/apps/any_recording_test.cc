@@ -130,12 +130,12 @@ TEST_F(AnyRecordingTest, PendulumsAloneAreShown) {
 TEST_F(AnyRecordingTest, FilterAndRateAreSaid) {
   const AppRun run =
       Succeeded(RunApp("pushid-fit", {Recordings(), "--lowpass_hz=10", "--resample_fps=30",
-                                      "--model_out=" + Path("m.json")}));
+                                      "--details", "--model_out=" + Path("m.json")}));
   EXPECT_TRUE(Contains(run.out,
                        "motion: low-pass at 10 Hz (zero-phase Butterworth), resampled to 30 frames "
                        "per second\n"));
   EXPECT_EQ(Json(Path("m.json"))["configuration"]["lowpass_hz"], "10");
-  const AppRun report = RunApp("pushid-report", {"--model=" + Path("m.json")});
+  const AppRun report = RunApp("pushid-report", {"--model=" + Path("m.json"), "--details"});
   EXPECT_TRUE(Contains(report.out, "motion: low-pass at 10 Hz"));
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--resample_fps=30"}),
                       {"--lowpass_hz=7.5", "recording '"}));
@@ -185,7 +185,7 @@ TEST_F(AnyRecordingTest, Manifest) {
   EXPECT_TRUE(Contains(run.out, "pushid-inspect '" + Path("measured it.json") + "'\n"));
   const std::string measured = "--recordings=" + Path("measured it.json");
   run = Succeeded(RunApp("pushid-fit", {measured}));
-  EXPECT_TRUE(Contains(run.out, "Warning: every push is external"));
+  EXPECT_TRUE(Contains(run.out, "warning: every push is external"));
   run = RunApp("pushid-fit", {measured, "--fix=mu,Kp_theta,Kd_theta,a_x"});
   EXPECT_TRUE(Refused(run, {"every parameter that acts on these recordings is fixed"}));
   const int files = CountFiles();
@@ -254,6 +254,9 @@ TEST_F(AnyRecordingTest, InspectDoubtsWhatNobodyCanBe) {
   json["recordings"][3].erase("push_csv");
   WriteText("odd.json", json.dump(1));
   run = RunApp("pushid-inspect", {Path("odd.json")});
+  EXPECT_TRUE(Contains(run.out, "3 more warnings by --details")) << run.out;
+  run = RunApp("pushid-inspect", {Path("odd.json"), "--details"});
+  run.out = OneLine(run.out);
   const auto id = [&json](int i) { return json["recordings"][i]["id"].get<std::string>(); };
   EXPECT_TRUE(Contains(run.out, "above 1 kN in 1 case (" + id(0) + ": 1500 N)"));
   EXPECT_TRUE(Contains(run.out, "first row stands out in 1 case (" + id(0)));

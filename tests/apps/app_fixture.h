@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,8 @@ class AppTest : public TempDirTest {
   // pushid-fit on the recordings, with the model in `name`; returns the model's path.
   std::string FitModel(const std::string& name = "model.json",
                        const std::vector<std::string>& more = {}) {
-    fit_ = Succeeded(RunApp("pushid-fit", With({Recordings(), "--model_out=" + Path(name)}, more)));
+    fit_ = Succeeded(
+        RunApp("pushid-fit", With({Recordings(), "--model_out=" + Path(name), "--details"}, more)));
     return Path(name);
   }
 
@@ -64,6 +66,11 @@ class AppTest : public TempDirTest {
   std::string id_;  // of the first recording
   AppRun fit_;      // the last FitModel
 };
+
+// Text without its line breaks: those of sentences, and those of commands.
+inline std::string OneLine(const std::string& text) {
+  return std::regex_replace(text, std::regex(R"((\s\\)?\s+)"), " ");
+}
 
 // The app refused: exit 1, one line on stderr that says all of `says`, nothing on stdout.
 inline ::testing::AssertionResult Refused(const AppRun& run, const std::vector<std::string>& says) {

@@ -156,10 +156,10 @@ TEST_F(CommandLineTest, TheLogHasSeveritiesAndSaysEveryStep) {
 }
 
 TEST_F(CommandLineTest, RepeatedCandidatesAreAllCompared) {
-  const AppRun run =
-      RunApp("pushid-crossvalidate",
-             {Recordings(), "--folds=2", "--yardsticks=false", "--compare=one: --preset=ldp",
-              "--group_by=subject", "--compare", "two: --self_force=linear; three: --fix=mu"});
+  const AppRun run = RunApp(
+      "pushid-crossvalidate",
+      {Recordings(), "--folds=2", "--yardsticks=false", "--compare=one: --preset=ldp", "--details",
+       "--group_by=subject", "--compare", "two: --self_force=linear; three: --fix=mu"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   for (const char* name : {"one", "two", "three", "\nsubject S01 ", "\nsubject S02 "}) {
     EXPECT_TRUE(Contains(run.out, name));

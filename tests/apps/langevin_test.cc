@@ -35,7 +35,7 @@ TEST_F(LangevinAppTest, AFitBySingleStepsSaysHowLikely) {
   const auto& score = json.at("likelihood");
   EXPECT_NEAR(score.at("aic").get<double>(),
               score.at("deviance").get<double>() + 2.0 * score.at("parameters").get<int>(), 1e-6);
-  const AppRun report = Succeeded(RunApp("pushid-report", {"--model=" + model}));
+  const AppRun report = Succeeded(RunApp("pushid-report", {"--model=" + model, "--details"}));
   EXPECT_TRUE(Contains(report.out, "-2 log L"));
 }
 

@@ -48,9 +48,9 @@ class PlatesAloneApp : public AppTest {
 
 TEST_F(PlatesAloneApp, AreFittedWhereFeetStand) {
   const std::string recordings = Simulated();
-  const AppRun fit =
-      Succeeded(RunApp("pushid-fit", {recordings, "--stance=fixed", "--fix=Kp_phi,Kd_phi",
-                                      "--model_out=" + Path("plates_fit.json")}));
+  const AppRun fit = Succeeded(
+      RunApp("pushid-fit", {recordings, "--stance=fixed", "--details", "--fix=Kp_phi,Kd_phi",
+                            "--model_out=" + Path("plates_fit.json")}));
   EXPECT_FALSE(Contains(fit.out, "nan"));
   EXPECT_FALSE(Contains(fit.out, "The model does not fit"));
   EXPECT_FALSE(Contains(fit.out, "lag-1"));

@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string& path = file.Fill(data, size);
   const Result<FittedModel> model = ReadFittedModel(path);
   if (model.ok()) {
-    Demand(!ReportText(model.value()).empty());
+    Demand(!ScreenOf(model.value()).ToString().empty());
     const auto written = ToJson(model.value(), RunInfo{});
     const Result<FittedModel> again = FittedModelFromJson(written, "written");
     Demand(again.ok() && ToJson(again.value(), RunInfo{}).dump() == written.dump());

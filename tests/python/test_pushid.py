@@ -254,9 +254,9 @@ def test_a_frame_is_flat(result, monkeypatch):
 
 
 def test_what_is_printed_names_calls(result):
-    for text in (str(result), *result.warnings, *(sentence for sentence, _ in result.advice)):
+    for text in (str(result), result.details, *result.warnings, *(sentence for sentence, _ in result.advice)):
         assert "--" not in text and "pushid-" not in text
-    assert "result.profile()" in str(result)
+    assert "result.profile()" in result.details and len(str(result).splitlines()) <= 24
 
 
 def test_hints_are_calls():

@@ -23,7 +23,7 @@ def test_profiles(result):
 
 def test_bootstrap_and_crossvalidation(made, result):
     assert result.bootstrap(9)["replicas"] == 9
-    assert "bootstrap" in str(result)
+    assert "bootstrap" in result.details
     scores = pushid.crossvalidate(made[0], {"pd": {"preset": "ldp"}}, folds=2)
     assert [s["name"] for s in scores] == ["model", "pd", "static", "constant velocity"]
     with pytest.raises(pushid.UsageError, match="scheme"):

@@ -81,8 +81,8 @@ def told(recordings, fault):
                         "subjects": [{"id": name, "mass_kg": round(mass, 2)}], "push_csv": f"{name}_push.csv"})
     with open("manifest.json", "w", encoding="utf-8") as file:
         json.dump({"recordings": entries}, file)
-    text = studies.run("pushid-inspect", "manifest.json", out=None, keep=False).text
-    lines = [line for line in text.splitlines() if "above 1 kN" not in line]
+    found = studies.run("pushid-inspect", "manifest.json", out="json_out", keep=False).json[0]
+    lines = [line for line in found["warnings"] if "above 1 kN" not in line]
     return sum(int(count) for line in lines for count in re.findall(r" in (\d+) cases? \(", line))
 
 

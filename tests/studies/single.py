@@ -10,6 +10,7 @@ Times are those of one core; without one, seconds.
 """
 import json
 import math
+import re
 
 import studies
 from studies import number, with_error
@@ -22,8 +23,9 @@ def fit(*flags):
 
 
 def transcript():
-    text = fit().text.split("\n\nRecording by recording")[0]
-    return studies.transcript("pushid-fit --recordings=M/manifest.json --setting=single", text)
+    found = fit()
+    return studies.transcript("pushid-fit --recordings=M/manifest.json --setting=single --model_out=model.json",
+                              found.text.replace(found.path, "model.json"))
 
 
 def interval(bounds):
@@ -88,10 +90,9 @@ def intervals():
 
 
 def coupled():
-    lines = fit("--free=Kp_x,Kp_y").text.splitlines()
-    told = [line for line in lines if line.startswith("Unidentifiable")]
-    return studies.transcript("pushid-fit --recordings=M/manifest.json --setting=single --free=Kp_x,Kp_y",
-                              "...\n" + "\n".join(told))
+    told = re.search(r"Unidentifiable(.|\n)*?(?=\n[A-Z])", fit("--free=Kp_x,Kp_y", "--details").text)[0]
+    return studies.transcript("pushid-fit --recordings=M/manifest.json --setting=single --free=Kp_x,Kp_y --details",
+                              "...\n" + told)
 
 
 if __name__ == "__main__":

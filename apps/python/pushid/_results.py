@@ -270,6 +270,11 @@ class Result:
         from . import _plots
         return _plots.motion(self, recording, **options)
 
+    @property
+    def details(self):
+        """The report as text; print(result) shows one screen of it."""
+        return self._model.details(self.advice)
+
     def __str__(self):
         return self._model.text(self.advice)
 

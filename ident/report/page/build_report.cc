@@ -181,6 +181,8 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
   return report;
 }
 
+std::string DetailsText(const FittedModel& model) { return ToText(BuildReport(model, {}, {})); }
+
 ReportSection StepSection(const ReportSource& source) {
   ReportSection section{"steps", "Who steps"};
   if (!source.fit.step_probability) return section;

@@ -3,8 +3,7 @@
 //   const Report report = BuildReport(result, recordings, BuildReportOptions());
 //   WriteFileAtomically("report.html", ToPage(report));
 //
-// A new section is a function in one of the *_sections files and its name in build_report.cc (and,
-// for the terminal, in report_text.cc).
+// A new section is a function in one of the *_sections files and its name in build_report.cc.
 #pragma once
 
 #include <string>
@@ -30,6 +29,8 @@ struct BuildReportOptions {
 // joints read, the figure shows skeletons too.
 Report BuildReport(const FittedModel& model, const std::vector<Recording>& recordings,
                    const BuildReportOptions& options);
+// All of it that needs no recordings, for a terminal (--details).
+std::string DetailsText(const FittedModel& model);
 
 // A recording seen through a model: what was measured, what is predicted from the first frame and
 // the push alone, with its bands and forces.

@@ -436,30 +436,11 @@ ReportSection MotionSection(const ReportSource& source) {
   return section;
 }
 
-namespace {
-
-// A sentence about how the push travels through groups, measured and predicted.
-std::string Travels(const PropagationSummary& p) {
-  if (p.recordings == 0 || !p.figures[kSlownessMeasured].known()) return "";
-  std::string text = "How the push travels in the fitted recordings: in " +
-                     std::to_string(std::lround(p.figures[kSlownessMeasured].weight)) +
-                     " recordings the onset of motion propagated at " +
-                     SpeedText(p.figures[kSlownessMeasured]) +
-                     " m/s (predicted: " + SpeedText(p.figures[kSlownessPredicted]) + ")";
-  const PropagationMean &measured = p.figures[kMomentumMeasured],
-                        &predicted = p.figures[kMomentumPredicted];
-  if (measured.known() && predicted.known()) {
-    text += "; the momentum of each person was " + Rounded(measured.value, 2) +
-            " times that of the previous one (predicted: " + Rounded(predicted.value, 2) + ")";
-  }
-  return text + "; the model misses " + Rounded(p.missed_movers, 4) + " of the " +
-         Rounded(p.movers, 4) + " people who moved.";
-}
-
-}  // namespace
-
 ReportSection LeadSection(const ReportSource& source) {
-  ReportSection section = ShortSection(source.model, Travels(source.propagation));
+  const std::string travels = TravelText(source.propagation);
+  ReportSection section = ShortSection(
+      source.model,
+      travels.empty() ? "" : "How the push travels in the fitted recordings: " + travels);
   if (const std::optional<ReportFigure> typical = TypicalFigure(source))
     section.figures.push_back(*typical);
   const ReportFigure known = IntervalFigure(source.model, true);

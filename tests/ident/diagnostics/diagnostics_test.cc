@@ -5,10 +5,11 @@
 
 #include <numeric>
 
+#include "ident/figures/screen.h"
 #include "ident/fit/fit.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/report/advice.h"
-#include "ident/report/report_text.h"
+#include "ident/report/page/build_report.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
@@ -171,7 +172,7 @@ TEST_F(Judged, AdviceNamesTheRecordingAndACommand) {
   EXPECT_TRUE(Contains(about->sentence, recordings_->at(5).id));
   EXPECT_TRUE(Contains(about->command, "--setting=single --fix=mu_y=10 --leave_out="));
   model.advice = advice;
-  EXPECT_TRUE(Contains(ReportText(model), about->command));
+  EXPECT_TRUE(Contains(DetailsText(model), CommandLines(about->command)));
 }
 
 std::string AllAdvice(const FitResult& result) {

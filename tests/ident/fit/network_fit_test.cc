@@ -9,7 +9,7 @@
 #include "ident/fit/fit.h"
 #include "ident/model/model_json.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/report/report_text.h"
+#include "ident/report/page/build_report.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/network_samples.h"
 #include "tests/test_support.h"
@@ -64,7 +64,7 @@ TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
   EXPECT_EQ(ToJson(read, RunInfo{}).dump(), json.dump());
   EXPECT_EQ(read.fit.options.model.learned->weights, result.options.model.learned->weights);
   EXPECT_EQ(HeldOutAde(study, read.fit), HeldOutAde(study, result));
-  EXPECT_TRUE(Contains(ReportText(read), "mlp:2"));
+  EXPECT_TRUE(Contains(DetailsText(read), "mlp:2"));
   // Weights are not in the table.
   for (const Estimate& e : read.fit.nuisance) {
     EXPECT_FALSE(Contains(e.name, "weight"));

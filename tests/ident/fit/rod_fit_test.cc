@@ -11,7 +11,7 @@
 #include "ident/prediction/prediction.h"
 #include "ident/problem/behaviour.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/report/report_text.h"
+#include "ident/report/page/build_report.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/network_samples.h"
 #include "tests/test_support.h"
@@ -57,7 +57,7 @@ TEST(RodFit, ResultsComeBackFromJsonWithoutLoss) {
   const FittedModel read = Unwrapped(FittedModelFromJson(json, "model.json"));
   EXPECT_EQ(ToJson(read, RunInfo{}).dump(), json.dump());
   EXPECT_EQ(HeldOutAde(study, read.fit), HeldOutAde(study, model.fit));
-  const std::string text = ReportText(read);
+  const std::string text = DetailsText(read);
   EXPECT_TRUE(Contains(text, "rod mlp:2 (26 weights, prior 1)"));
   EXPECT_TRUE(Contains(text, "rod_lift"));
 }

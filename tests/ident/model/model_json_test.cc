@@ -10,6 +10,7 @@
 
 #include "datasets/files/json_file.h"
 #include "ident/fit/fit.h"
+#include "ident/report/page/build_report.h"
 #include "ident/report/report_text.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
@@ -101,7 +102,7 @@ TEST(ResultJson, InfinitiesStayInfinite) {
   EXPECT_EQ(e.status, EstimateStatus::kUnidentifiable);
   EXPECT_EQ(e.standard_error, std::numeric_limits<double>::infinity());
   EXPECT_EQ(e.lower95, -std::numeric_limits<double>::infinity());
-  EXPECT_EQ(ReportText(read), ReportText(model));
+  EXPECT_EQ(DetailsText(read), DetailsText(model));
 }
 
 // Five recordings that the data of two parameters run away on: what is derived has no bounds then,

@@ -212,7 +212,7 @@ TEST(Behaviour, LinesThatGoBackDoNotMoveOnFarther) {
   b.harder_moves_farther = false;
   FitResult result;
   result.behaviour = b;
-  const std::string text = BehaviourText(result) + LinesTable(result).ToString();
+  const std::string text = BehaviourText(result) + BehaviourTable(result).ToString();
   EXPECT_TRUE(Contains(text, "does NOT move the line farther: row"));
   EXPECT_TRUE(Contains(text, "-0.3"));
   EXPECT_TRUE(Contains(text, "-0.6"));

@@ -45,9 +45,8 @@ TEST(ReportDocument, PageEscapesAndLeavesOutEmptySections) {
 
 TEST(ReportDocument, TextHasTheSameContent) {
   const std::string text = ToText(SampleReport());
-  for (const char* part :
-       {"Full & <whole>\n==============\none\ntwo\n", "advice: try\n", "a<b       1\n",
-        "see\ntime_s  what\n0.5     say \"x\", y\n", "fold <1>\n"}) {
+  for (const char* part : {"Full & <whole>\n==============\none\ntwo\n", "advice: try\n",
+                           "a<b       1\n", "fold <1>\n"}) {
     EXPECT_TRUE(Contains(text, part));
   }
   EXPECT_FALSE(Contains(text, "Nothing"));
