@@ -23,7 +23,7 @@ def fit(*flags):
 
 
 def transcript():
-    text = studies.on_recordings("pushid-fit", "single", out=None).text
+    text = studies.on_recordings("pushid-fit", "single", out=None, keep=False).text
     return studies.transcript("pushid-fit --recordings=M/manifest.json --setting=single", text)
 
 
