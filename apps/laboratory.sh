@@ -31,7 +31,7 @@ awk -F '  +' '
     if (!($1 in status) && $4 ~ /^\[/) status[$1] = $6
     if (/^The model does not fit/ && !verdict) { verdict = $0; said = 1; next }
     if (said && NF) verdict = verdict " " $0; else said = 0
-    if ($1 == "lag of the pushes") lag = $3
+    if ($1 == "lag of the pushes" && !lag) lag = $3
     next
   }
   $1 == "parameter" { printf "%-18s %7s %9s  %-18s %s\n", $1, $2, $3, "95 % interval", "status"; next }

@@ -23,9 +23,8 @@ def fit(*flags):
 
 
 def transcript():
-    found = fit()
-    return studies.transcript("pushid-fit --recordings=M/manifest.json --setting=single --model_out=model.json",
-                              found.text.replace(found.path, "model.json"))
+    text = studies.on_recordings("pushid-fit", "single", out=None, keep=False).text
+    return studies.transcript("pushid-fit --recordings=M/manifest.json --setting=single", text)
 
 
 def interval(bounds):
