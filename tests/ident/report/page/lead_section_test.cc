@@ -1,6 +1,7 @@
 // The report's three sentences, by hand.
 #include <gtest/gtest.h>
 
+#include "ident/parameters/parameter_table.h"
 #include "ident/report/document.h"
 #include "ident/report/page/motion_sections.h"
 #include "tests/test_support.h"
@@ -23,6 +24,7 @@ ReportSection SectionOf(const FittedModel& model, const PropagationSummary& prop
 
 TEST(LeadSection, SaysWhatIsKnownWhatIsNotAndWhatToDo) {
   FittedModel model;
+  model.fit.options.table = BaseTable();
   model.fit.estimates = {EstimateOf("mu", 31.25, EstimateStatus::kIdentified),
                          EstimateOf("Kp_x", 0.0, EstimateStatus::kFixed),
                          EstimateOf("a_x", -10.0, EstimateStatus::kPriorHeld),
@@ -39,14 +41,16 @@ TEST(LeadSection, SaysWhatIsKnownWhatIsNotAndWhatToDo) {
   const std::string page = ToPage({"title", "", {section}});
   EXPECT_LT(page.find("The model was not checked"), page.find("<figure"));
   EXPECT_EQ(section.paragraphs[0], "The model was not checked: an older version fitted.");
-  EXPECT_TRUE(Contains(section.paragraphs[1],
+  EXPECT_TRUE(Contains(section.paragraphs[2],
                        "What is known: these recordings identify mu = 31.2 N s/m (20 to 42)"));
-  EXPECT_TRUE(Contains(section.paragraphs[1], "the fitted person settles within 2 s"));
+  EXPECT_TRUE(Contains(section.paragraphs[2], "the fitted person settles within 2 s"));
   EXPECT_EQ(
-      section.paragraphs[2],
+      section.paragraphs[3],
       "What is not known: determined more by priors or constraints than by the recordings: a_x = "
       "-10 N s/m; with wide intervals: a_y = -9 N s/m; with 4 people all intervals are rough.");
-  EXPECT_EQ(section.paragraphs[3], "What to do next: Record more people.");
+  EXPECT_EQ(section.paragraphs[1], "What to do next: Record more people.");
+  ASSERT_EQ(section.figures.size(), 1u);
+  EXPECT_EQ(section.figures[0].figure.panels.size(), 1u) << "only what is identified";
 }
 
 TEST(LeadSection, SaysHowThePushTravels) {
@@ -58,7 +62,7 @@ TEST(LeadSection, SaysHowThePushTravels) {
   travels.figures[kSlownessPredicted] = {0.25, 0.0, 9.0};
   const ReportSection section = SectionOf(FittedModel(), travels);
   ASSERT_EQ(section.paragraphs.size(), 5u);
-  EXPECT_EQ(section.paragraphs[3],
+  EXPECT_EQ(section.paragraphs[4],
             "How the push travels in the fitted recordings: in 3 recordings the onset of motion "
             "propagated "
             "at 2 +- 0.4 m/s (predicted: 4); the model misses 2 of the 9 people who moved.");
@@ -72,8 +76,8 @@ TEST(LeadSection, SaysWhatIsUndeterminedAndTheGains) {
   model.fit.derived = {{"Kp_theta/(m g l)", "1", 1.6, 0.1, 1.4, 1.8}};
   const ReportSection section = SectionOf(model, {});
   ASSERT_EQ(section.paragraphs.size(), 5u);
-  EXPECT_TRUE(Contains(section.paragraphs[2], "Kp_theta = 2340 N s/m (undetermined)"));
-  EXPECT_TRUE(Contains(section.paragraphs[3], "Ankle stiffness 1.6 times m g l"));
+  EXPECT_TRUE(Contains(section.paragraphs[3], "Kp_theta = 2340 N s/m (undetermined)"));
+  EXPECT_TRUE(Contains(section.paragraphs[4], "Ankle stiffness 1.6 times m g l"));
 }
 
 TEST(LeadSection, ManyNamesAreCounted) {
@@ -81,9 +85,9 @@ TEST(LeadSection, ManyNamesAreCounted) {
   for (const char* name : {"a", "b", "c", "d", "e", "f"}) {
     model.fit.estimates.push_back(EstimateOf(name, 1.0, EstimateStatus::kWeak));
   }
-  EXPECT_TRUE(Contains(SectionOf(model, {}).paragraphs[2],
+  EXPECT_TRUE(Contains(SectionOf(model, {}).paragraphs[3],
                        "a = 1 N s/m, b = 1 N s/m, c = 1 N s/m, d = 1 N s/m and 2 more"));
-  EXPECT_TRUE(Contains(SectionOf(model, {}).paragraphs[1], "identify no parameter"));
+  EXPECT_TRUE(Contains(SectionOf(model, {}).paragraphs[2], "identify no parameter"));
 }
 
 }  // namespace
