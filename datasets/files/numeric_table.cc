@@ -42,11 +42,6 @@ bool IsMissing(std::string_view cell) {
   return cell.empty() || EqualsIgnoringCase(cell, "nan") || EqualsIgnoringCase(cell, "n/a");
 }
 
-std::string_view Unquoted(std::string_view cell) {
-  const bool quoted = cell.size() >= 2 && cell.front() == '"' && cell.back() == '"';
-  return quoted ? Trimmed(cell.substr(1, cell.size() - 2)) : cell;
-}
-
 class TableReader {
  public:
   TableReader(const std::string& path, TableFormat format, const TableReadOptions& options)
@@ -127,7 +122,7 @@ class TableReader {
     TableCells cells(line, separator_);
     std::unordered_set<std::string> seen;
     for (std::string_view cell; cells.Next(&cell);) {
-      const std::string name(Unquoted(cell));
+      const std::string name(cell);
       double number = 0.0;
       if (ParseDouble(name, &number)) {
         return reader_.ErrorHere("a column is called " + Quoted(name) +
@@ -182,7 +177,6 @@ class TableReader {
         if (trailing_ && cell.empty() && !cells.Next(&cell)) break;
         return WrongLength(count + 1);
       }
-      cell = Unquoted(cell);
       if (IsMissing(cell)) {
         row_[count] = std::numeric_limits<double>::quiet_NaN();
       } else if (!ParseDouble(cell, &row_[count])) {

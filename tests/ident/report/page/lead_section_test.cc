@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "datasets/files/names.h"
+#include "ident/parameters/parameter_table.h"
 #include "ident/report/document.h"
 #include "ident/report/estimate_tables.h"
 #include "ident/report/page/motion_sections.h"
@@ -25,6 +26,7 @@ ReportSection SectionOf(const FittedModel& model, const PropagationSummary& prop
 
 TEST(LeadSection, SaysWhatIsFoundAndWhatToDo) {
   FittedModel model;
+  model.fit.options.table = BaseTable();
   model.fit.estimates = {EstimateOf("mu", 31.25, EstimateStatus::kIdentified),
                          EstimateOf("Kp_x", 0.0, EstimateStatus::kFixed),
                          EstimateOf("a_y", -9.0, EstimateStatus::kWeak)};
