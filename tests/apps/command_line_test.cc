@@ -88,19 +88,20 @@ TEST_F(CommandLineTest, ExamplesOfHelpWork) {
   }
 }
 
-// A fit that takes longer is interrupted after three seconds. Elsewhere than on a terminal the
+// A bootstrap that takes longer is interrupted after four seconds. Elsewhere than on a terminal the
 // first line comes after ten.
 TEST_F(CommandLineTest, ProgressIsABarOnATerminalAndRareElsewhere) {
-  const std::string fit = "timeout --signal=INT 3 '" PUSHID_BIN_DIR "/pushid-fit' " + Recordings() +
-                          " --self_force=mlp:64";
-  EXPECT_FALSE(Contains(RunProgram("/bin/bash", {"-c", fit}).err, "iteration"));
+  const std::string check = "timeout --signal=INT 4 '" PUSHID_BIN_DIR "/pushid-check' " +
+                            Recordings() + " --model=" + FitModel() +
+                            " --bootstrap=5000 --bootstrap_by=recording";
+  EXPECT_FALSE(Contains(RunProgram("/bin/bash", {"-c", check}).err, "bootstrap draw"));
   const auto seen = [](const std::string& command) {
     return RunProgram("/usr/bin/script", {"-qec", command, "/dev/null"}).out;
   };
-  const std::string bar = seen(fit), quiet = seen(fit + " --quiet");
-  EXPECT_TRUE(Contains(bar, "###") && Contains(bar, " s  fitting")) << bar;
+  const std::string bar = seen(check), quiet = seen(check + " --quiet");
+  EXPECT_TRUE(Contains(bar, ".] ") && Contains(bar, "bootstrap draw")) << bar;
   EXPECT_FALSE(Contains(bar, "] 0 s")) << bar;
-  EXPECT_FALSE(Contains(quiet, "fitting")) << quiet;
+  EXPECT_FALSE(Contains(quiet, "bootstrap draw")) << quiet;
 }
 
 TEST_F(CommandLineTest, VersionIsTheProgramAndANumber) {
