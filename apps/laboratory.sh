@@ -49,7 +49,7 @@ awk -F '  +' '
     print "what is taken as known: the recordings ask for pushes " lag " later"
   }' "$out/standing.txt" "$out/compared.txt"
 awk -F '  +' '/^mean over recordings/ {
-  for (i = 3; i <= 4; ++i) sub(/ .*/, "", $i)
-  print "who steps, predicted by the model of who stands: mean error of the hip " $3 " m, of one who would not move " $4 " m"
+  for (i = 2; i <= 3; ++i) sub(/ .*/, "", $i)
+  print "who steps, predicted by the model of who stands: mean error of the hip " $2 " m, of one who would not move " $3 " m"
 }' "$out/stepping.txt"
 sed -n 's/^pushid-evaluate: warning: /the evaluation warns: /p' "$out/warnings.txt"

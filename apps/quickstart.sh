@@ -98,8 +98,8 @@ echo "  $(realpath "$bin")/pushid-fit --recordings=YOUR/manifest.json --setting=
 say "Result"
 grep -E '^(parameter|mu|Kp_theta) |intervals cover' "$out/identified.txt"
 awk -F '   *' '/^mean over recordings/ {
-  for (i = 3; i <= 5; ++i) sub(/ .*/, "", $i)
-  print "mean error of the hip on held-out pushes: " $3 " m (static " $4 ", constant velocity " $5 ")"
+  for (i = 2; i <= 4; ++i) sub(/ .*/, "", $i)
+  print "mean error of the hip on held-out pushes: " $2 " m (static " $3 ", constant velocity " $4 ")"
 }' "$out/errors.txt"
 awk '{ inside += $1; all += $3; whole += $1 == $3 } END {
   print NR " further studies with other seeds: " inside " of " all " intervals cover the truth; in " whole " of them all do"

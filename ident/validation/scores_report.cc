@@ -98,7 +98,7 @@ std::string BandsText(const std::string& name, const ScoreSummary& summary) {
 // A row of means of predictors; errors: of all, not of the first alone.
 std::vector<std::string> MeansRow(const std::string& name, const std::vector<MeanScore>& means,
                                   const MetricList& shown, bool errors) {
-  std::vector<std::string> row = {name, std::to_string(means[0].recordings)};
+  std::vector<std::string> row = {name};
   for (size_t i = 0; i < means.size(); ++i) {
     const bool known = means[i].recordings > 0;
     row.push_back(errors || i == 0 ? MeanText(means[i], shown)
@@ -117,7 +117,9 @@ void AddGroups(const std::vector<const ScoreSummary*>& summaries, const MetricLi
       for (const ScoreSummary* one : summaries) {
         means.push_back(MeanOfGroup(one->by.at(key), group.first));
       }
-      table->Add(MeansRow(GroupTitle(key, *summaries[0]) + group.first, means, shown, errors));
+      const std::string name = GroupTitle(key, *summaries[0]) + group.first;
+      table->Add(MeansRow(name + " (" + std::to_string(means[0].recordings) + ")", means, shown,
+                          errors));
     }
   }
 }
@@ -147,7 +149,7 @@ namespace {
 TextTable MeansTable(const Evaluation& evaluation, bool all) {
   const ScoreSummary& m = evaluation.model;
   const MetricList shown = TableMetrics(m.observed);
-  std::vector<std::string> header = {NamesText(shown), ">recordings", "model"};
+  std::vector<std::string> header = {NamesText(shown), "model"};
   std::vector<const ScoreSummary*> summaries = {&m};
   for (const BaselineSummary& baseline : evaluation.baselines) {
     header.push_back(baseline.name);
@@ -338,7 +340,7 @@ std::string ConclusionText(const PairedDifference& d) {
 // A table by --group_by; empty where no label tells recordings apart.
 std::string HeldOutGroupsText(const std::vector<CrossValidation>& candidates,
                               const MetricList& shown) {
-  std::vector<std::string> header = {NamesText(shown) + ", held out", ">recordings"};
+  std::vector<std::string> header = {NamesText(shown) + ", held out"};
   std::vector<const ScoreSummary*> summaries;
   for (const CrossValidation& candidate : candidates) {
     header.push_back(candidate.predictor);

@@ -165,21 +165,15 @@ def test_pictures(made, result, monkeypatch):
     assert axes.images[0].get_array().shape == (4, 241) and whole(axes)
 
 
-def random_push(frames, fps, seed):
-    """A force at the hip that goes on at random: (frames - 1, 4), N and N m."""
-    draws = np.random.default_rng(seed).normal(size=frames - 1)
-    slow = np.convolve(draws, np.hanning(15) / 7.0, mode="same") * 15.0
-    return np.stack([slow, 0 * slow, 0.95 * slow, 0 * slow], axis=1)
-
-
-def stood(push, fps=50.0):
-    """One person whose hip, 0.95 m above the ankles, answers a push as a spring would."""
-    frames = len(push) + 1
-    x = 1e-4 * np.concatenate([[0.0], np.cumsum(push[:, 0]) / fps])
-    hip = np.stack([x, np.zeros(frames), np.full(frames, 1.03)], axis=1)
-    ankle = np.tile([0.0, 0.0, 0.08], (frames, 1))
+def on_oscillating_ground(seconds=40.0, fps=50.0):
+    """One person on ground that moves by a sum of sines with a period of 10 s, whose hip goes half as far again."""
+    times = np.arange(int(seconds * fps) + 1) / fps
+    along = 0.004 * sum(np.sin(2 * np.pi * f * times) for f in (0.2, 0.5, 0.9, 1.3))
+    ground = np.stack([along, 0 * along], axis=1)
+    hip = np.stack([1.5 * along, 0 * along, 0 * along + 1.03], axis=1)
+    ankle = np.stack([along, 0 * along, 0 * along + 0.08], axis=1)
     return pushid.Recording(hip=hip, left_ankle=ankle + [0, 0.1, 0], right_ankle=ankle - [0, 0.1, 0], mass=80.0, fps=fps,
-                            push=push, push_kind="external")
+                            push=np.zeros((len(times) - 1, 4)), push_kind="external", ground=ground)
 
 
 def test_loop(made, result):
@@ -193,9 +187,9 @@ def test_loop(made, result):
 
 def test_frequency_response(made, result):
     assert result.frequency_response(made[0]) == {}
-    found = result.frequency_response([stood(random_push(1501, 50.0, 1))])
-    assert sorted(found) == ["angle_theta_by_force"]
-    angle = found["angle_theta_by_force"]
-    assert angle["input_unit"] == "N" and angle["output_unit"] == "rad" and len(angle["frequency"]) > 5
+    found = result.frequency_response([on_oscillating_ground()])
+    assert sorted(found) == ["angle_theta_by_ground_shift"]
+    angle = found["angle_theta_by_ground_shift"]
+    assert angle["input_unit"] == "m" and angle["output_unit"] == "rad" and len(angle["frequency"]) > 5
     assert {"gain", "phase", "coherence", "log_gain_error", "people", "model_gain"} <= set(angle)
     assert np.all(angle["gain"] > 0) and len(angle["gain"]) == len(angle["model_phase"])
