@@ -117,6 +117,32 @@ std::string FigureText(const PropagationMean& mean) {
 
 // The onset errors of those who move in both say little where most movers are missed: a model that
 // moves only the pushed person would look best.
+std::vector<std::string> FailedRecordings(const ScoreSummary& summary) {
+  std::vector<std::string> failed;
+  for (const RecordingScore& r : summary.recordings) {
+    if (!r.failure.empty()) failed.push_back(r.id + " (" + r.failure + ")");
+  }
+  return failed;
+}
+
+// The mean over all recordings, with the error of standing still where there is no prediction.
+Metrics MeanWithStatic(const ScoreSummary& summary) {
+  Metrics sum = Metrics::Zero();
+  for (const RecordingScore& r : summary.recordings) sum += r.value;
+  return sum / std::max<double>(1.0, static_cast<double>(summary.recordings.size()));
+}
+
+std::string FailuresText(const std::string& name, const ScoreSummary& summary,
+                         const MetricList& shown) {
+  const std::vector<std::string> failed = FailedRecordings(summary);
+  if (failed.empty()) return "";
+  return name + " fails in " + std::to_string(failed.size()) + " of " +
+         std::to_string(summary.recordings.size()) +
+         " recordings, which are in no mean: " + Joined(failed, "; ") + "; " + NamesText(shown) +
+         " with those of the static baseline there: " +
+         Joined(PlainCells(MeanWithStatic(summary), shown), " / ") + "\n";
+}
+
 bool MostMissed(const PropagationSummary& s) { return s.missed_movers > 0.5 * s.movers; }
 
 bool OfThoseWhoMoveInBoth(int figure) {
@@ -130,8 +156,8 @@ std::string CountsText(double part, double whole) {
 }  // namespace
 
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
-  std::string text;
   const MetricList shown = TableMetrics(evaluation.model.observed);
+  std::string text = FailuresText("the model", evaluation.model, shown);
   if (per_recording) {
     std::vector<std::string> header = {"recording", ">frames"};
     Append(Titles(shown), &header);
@@ -271,6 +297,9 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   if (candidates.empty()) return text;
   const bool groups = candidates[0].summary.propagation.recordings > 0;
   const MetricList shown = TableMetrics(candidates[0].summary.observed);
+  for (const CrossValidation& candidate : candidates) {
+    text += FailuresText(candidate.predictor, candidate.summary, shown);
+  }
   std::vector<std::string> header = {"fold", ">held out"};
   Append(Titles(shown), &header);
   Append({">failed", ">fell"}, &header);
@@ -427,6 +456,10 @@ void AddSummary(const ScoreSummary& s, bool with_recordings, Json* json) {
     (*json)["recordings"].push_back(std::move(row));
   }
   AddMeans(s, metrics, true, json);
+  if (!FailedRecordings(s).empty()) {
+    Json& with_static = (*json)["mean_with_failures_as_static"] = Json::object();
+    AddMetrics(MeanWithStatic(s), TableMetrics(s.observed), &with_static);
+  }
   if (s.propagation.recordings > 0) {
     Json& propagation = (*json)["propagation"] = JsonOf(s.propagation);
     if (!s.propagation_by_setting.empty()) {
