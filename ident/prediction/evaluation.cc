@@ -147,6 +147,7 @@ RecordingScore FailedScore(const PendulumRecording& recording, const std::string
   score.frames = recording.num_frames();
   score.fell = true;
   score.failure = failure;
+  score.value = ScoreHip(recording, StaticBaseline(recording), 0).value;  // of the second mean
   return score;
 }
 

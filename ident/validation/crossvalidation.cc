@@ -303,6 +303,9 @@ ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, const P
       mean.propagation.Divide(sums.counts[i]);
       for (StepPrediction& step : mean.steps) step.margin /= sums.counts[i];
     }
+    if (!mean.failure.empty()) {
+      mean.value = ScoreHip(recordings[i], StaticBaseline(recordings[i]), predictor.observed).value;
+    }
     held.push_back(recordings[i]);
     means.push_back(mean);
   }

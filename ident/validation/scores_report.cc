@@ -129,6 +129,32 @@ std::string FigureText(const PropagationMean& mean) {
   return WithError(mean.value, mean.error);
 }
 
+std::vector<std::string> FailedRecordings(const ScoreSummary& summary) {
+  std::vector<std::string> failed;
+  for (const RecordingScore& r : summary.recordings) {
+    if (!r.failure.empty()) failed.push_back(r.id + " (" + r.failure + ")");
+  }
+  return failed;
+}
+
+// The mean over all recordings, with the error of standing still where there is no prediction.
+Metrics MeanWithStatic(const ScoreSummary& summary) {
+  Metrics sum = Metrics::Zero();
+  for (const RecordingScore& r : summary.recordings) sum += r.value;
+  return sum / std::max<double>(1.0, static_cast<double>(summary.recordings.size()));
+}
+
+std::string FailuresText(const std::string& name, const ScoreSummary& summary,
+                         const MetricList& shown) {
+  const std::vector<std::string> failed = FailedRecordings(summary);
+  if (failed.empty()) return "";
+  return name + " fails in " + std::to_string(failed.size()) + " of " +
+         std::to_string(summary.recordings.size()) +
+         " recordings, which are in no mean: " + Joined(failed, "; ") + "; " + NamesText(shown) +
+         " with those of the static baseline there: " +
+         Joined(PlainCells(MeanWithStatic(summary), shown), " / ") + "\n";
+}
+
 // The onset errors of those who move in both say little where most movers are missed: a model that
 // moves only the pushed person would look best.
 bool MostMissed(const PropagationSummary& s) { return s.missed_movers > 0.5 * s.movers; }
@@ -210,7 +236,8 @@ std::string RatioText(const Evaluation& evaluation) {
 
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   const ScoreSummary& m = evaluation.model;
-  std::string text = per_recording ? RecordingsTable(evaluation).ToString() + "\n" : "";
+  std::string text = TextLines(FailuresText("the model", m, TableMetrics(m.observed)));
+  if (per_recording) text += RecordingsTable(evaluation).ToString() + "\n";
   text += MeansTable(evaluation, true).ToString() +
           TextLines(WithoutLabelText(m.without_label) + ErrorsText(m) + ObservedText(m) +
                     BandsText("model", m));
@@ -228,7 +255,7 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
 Screen EvaluationScreen(const Evaluation& evaluation) {
   const ScoreSummary& m = evaluation.model;
   Screen screen{CountText(m.recordings.size(), "recording") + ", predicted and as recorded"};
-  screen.verdict = RatioText(evaluation);
+  screen.verdict = FailuresText("the model", m, TableMetrics(m.observed)) + RatioText(evaluation);
   screen.tables = {MeansTable(evaluation, false)};
   screen.paragraphs = {ErrorsText(m), ObservedText(m), BandsText("model", m)};
   if (m.steps.known()) {
@@ -358,6 +385,9 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   if (candidates.empty()) return text;
   const bool groups = candidates[0].summary.propagation.recordings > 0;
   const MetricList shown = TableMetrics(candidates[0].summary.observed);
+  for (const CrossValidation& candidate : candidates) {
+    text += FailuresText(candidate.predictor, candidate.summary, shown);
+  }
   std::vector<std::string> header = {"fold", ">held out"};
   Append(Titles(shown), &header);
   Append({">failed", ">fell"}, &header);
@@ -446,7 +476,10 @@ Screen CrossValidationScreen(const std::vector<CrossValidation>& candidates) {
                         : "",
                std::to_string(one.failures), std::to_string(one.falls)});
   }
-  if (rival != nullptr) screen.verdict = ConclusionText(Compare(own, *rival));
+  for (const CrossValidation& one : candidates) {
+    screen.verdict += FailuresText(one.predictor, one.summary, shown);
+  }
+  if (rival != nullptr) screen.verdict += ConclusionText(Compare(own, *rival));
   screen.tables = {table};
   screen.paragraphs = {ErrorsText(own.summary), ObservedText(own.summary)};
   for (const CrossValidation& one : candidates) {
@@ -546,6 +579,10 @@ void AddSummary(const ScoreSummary& s, bool with_recordings, Json* json) {
     (*json)["recordings"].push_back(std::move(row));
   }
   AddMeans(s, metrics, true, json);
+  if (!FailedRecordings(s).empty()) {
+    Json& with_static = (*json)["mean_with_failures_as_static"] = Json::object();
+    AddMetrics(MeanWithStatic(s), TableMetrics(s.observed), &with_static);
+  }
   if (s.propagation.recordings > 0) {
     Json& propagation = (*json)["propagation"] = JsonOf(s.propagation);
     if (!s.propagation_by_setting.empty()) {

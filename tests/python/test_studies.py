@@ -168,7 +168,7 @@ def test_pictures(made, result, monkeypatch):
 def on_oscillating_ground(seconds=40.0, fps=50.0):
     """One person on ground that moves by a sum of sines with a period of 10 s, whose hip goes half as far again."""
     times = np.arange(int(seconds * fps) + 1) / fps
-    along = 0.004 * sum(np.sin(2 * np.pi * f * times) for f in (0.2, 0.5, 0.9, 1.3))
+    along = 0.01 * sum(1.0 - np.cos(2 * np.pi * f * times) for f in (0.2, 0.5, 0.9, 1.3))
     ground = np.stack([along, 0 * along], axis=1)
     hip = np.stack([1.5 * along, 0 * along, 0 * along + 1.03], axis=1)
     ankle = np.stack([along, 0 * along, 0 * along + 0.08], axis=1)
@@ -190,6 +190,6 @@ def test_frequency_response(made, result):
     found = result.frequency_response([on_oscillating_ground()])
     assert sorted(found) == ["angle_theta_by_ground_shift"]
     angle = found["angle_theta_by_ground_shift"]
-    assert angle["input_unit"] == "m" and angle["output_unit"] == "rad" and len(angle["frequency"]) > 5
+    assert angle["input_unit"] == "m" and angle["output_unit"] == "rad" and len(angle["frequency"]) == 4
     assert {"gain", "phase", "coherence", "log_gain_error", "people", "model_gain"} <= set(angle)
     assert np.all(angle["gain"] > 0) and len(angle["gain"]) == len(angle["model_phase"])

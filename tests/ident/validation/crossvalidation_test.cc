@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "ident/validation/scores_report.h"
@@ -225,9 +226,15 @@ TEST(CrossValidation, RepeatsAreAveragedBeforeTheMean) {
   EXPECT_EQ(result.folds[2].value[kHipFde], 11.0 + 13.0);
 }
 
-TEST(CrossValidation, FailuresAreCountedAndInNoMean) {
+// In the second mean a failure counts as standing still does, 0.4 m: (1 + 0.4 + 3) m / 3.
+TEST(CrossValidation, FailuresAreSaidFirstAndInNoMeanButTheSecond) {
   std::vector<PendulumRecording> recordings = Labels();
   recordings.resize(3);
+  for (PendulumRecording& recording : recordings) {
+    recording.hip = {std::vector<Vector3<double>>(5, Vector3<double>(0.4, 0.0, 0.0))};
+    recording.hip[0][0].setZero();
+    recording.states.assign(1, std::vector<PendulumState<double>>(5));
+  }
   const CrossValidation result =
       CrossValidate(recordings, {{"a", {0, 1}}, {"b", {2}}}, Scripted(1), 1);
   EXPECT_EQ(result.failures, 1);
@@ -235,6 +242,12 @@ TEST(CrossValidation, FailuresAreCountedAndInNoMean) {
   EXPECT_EQ(result.folds[0].value[kHipAde], 1.0);
   EXPECT_EQ(result.summary.mean.recordings, 2);
   EXPECT_EQ(result.summary.recordings[1].failure, "fell over");
+  const std::string text = CrossValidationText({result});
+  EXPECT_EQ(text.find("scripted fails in 1 of 3 recordings, which are in no mean: 1 (fell over)"),
+            0u)
+      << text;
+  EXPECT_NEAR(ToJson(result)["mean_with_failures_as_static"]["hipADE_m"].get<double>(), 4.4 / 3.0,
+              1e-12);
 }
 
 TEST(CrossValidation, PairedDifferenceByHand) {
