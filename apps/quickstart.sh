@@ -68,7 +68,7 @@ say "Making recordings of two other people, held out: the same parameters, other
 
 say "Predicting the held-out pushes: mean and last error of the hip, compared with two baselines"
 "$bin/pushid-evaluate" --model="$out/model.json" --recordings="$out/held-out/manifest.json" \
-  --per_recording=false --json_out="$out/scores.json" | tee "$out/errors.txt"
+  --json_out="$out/scores.json" | tee "$out/errors.txt"
 
 say "Writing one of the predictions as a trajectory"
 "$bin/pushid-predict" --model="$out/model.json" --recordings="$out/held-out/manifest.json" \

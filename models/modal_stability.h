@@ -17,8 +17,8 @@ namespace pushid {
 // First derivatives, at rest in the reference posture, of the self force less gravity.
 struct RestJacobian {
   Eigen::Matrix<double, 4, 6> by_state;  // over [theta, phi, qd]
-  Eigen::Vector2d by_previous;  // diagonal: cart rows by the cart's velocity a step before
-  double ground = 0.0;          // N s/m, on the cart's velocity after a step, where feet stand
+  Eigen::Vector2d by_previous;           // diagonal: cart rows by the cart's velocity a step before
+  double ground = 0.0;  // N s/m, on the cart's velocity after a step, where feet stand
 };
 
 // The pendulum that a person is at rest.
@@ -59,8 +59,7 @@ Vector4<T> ForceNearRest(Stance stance, const SelfForce& self, const ParameterSe
 enum class RestInput { kAll, kState, kAnkle, kStep };
 
 inline RestJacobian LinearizeAtRest(const ModelOptions& options, const SelfForce& self,
-                                    const ParameterSet<double>& p,
-                                    RestInput by = RestInput::kAll) {
+                                    const ParameterSet<double>& p, RestInput by = RestInput::kAll) {
   const Stance stance = options.stance;
   using RestDual = Dual<double, 8>;
   ParameterSet<RestDual> parameters;

@@ -18,6 +18,7 @@
 #include "ident/report/report_text.h"
 #include "ident/validation/crossvalidation.h"
 #include "ident/validation/experiment_design.h"
+#include "ident/validation/scores_json.h"
 #include "ident/validation/scores_report.h"
 
 namespace pushid {

@@ -47,8 +47,9 @@ MaybeError WritePushCsv(const std::string& path, const std::vector<Eigen::Vector
 //   0.000,0.0                  0.000,0.0,0.0,0.0
 //   0.001,1.7                  0.001,1.7,-0.2,0.0
 //
-// time in s (or ms, numeric_table.h) on the sensor's clock, ascending, evenly spaced or nearly so; force in N along the
-// sensor's axis, or as a vector in the project's axes (x forward, y left, z up).
+// time in s (or ms, numeric_table.h) on the sensor's clock, ascending, evenly spaced or nearly so;
+// force in N along the sensor's axis, or as a vector in the project's axes (x forward, y left, z
+// up).
 struct SensorRecord {
   std::vector<double> time_s;
   std::vector<Eigen::Vector3d> force;  // N; a force along an axis stands in x

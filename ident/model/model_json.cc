@@ -35,7 +35,8 @@ void CheckConsistent(const FitResult& result) {
   for (const Estimate& e : result.estimates) {
     const ParameterSpec* spec = result.options.table.Find(e.name);
     const double used = spec != nullptr ? result.parameters[spec->id] : e.value;
-    if (std::fabs(e.value - used) <= kRounding * std::fabs(used)) continue;
+    const double off = std::fabs(e.value - used);
+    if (!std::isfinite(off) || off <= kRounding * std::fabs(used)) continue;
     throw WrongEntry("parameters/" + e.name,
                      e.name + " is " + Rounded(e.value) + " here and " + Rounded(used) +
                          " under 'values', by which people are predicted; give both one value");

@@ -246,7 +246,7 @@ FitCommand Adviser::DecayingModes() const {
     return Same().Set("network_prior", Rounded(prior, 6));
   }
   if (o.self_force == SelfForceKind::kLinear) return Same().Set("self_force", "none");
-  return SettleHarder(kMuchSettling);
+  return Same().Append("prior", "Kp_theta:2000:300");
 }
 
 void Adviser::Person() {

@@ -254,7 +254,7 @@ TEST_F(AnyRecordingTest, InspectDoubtsWhatNobodyCanBe) {
   json["recordings"][3].erase("push_csv");
   WriteText("odd.json", json.dump(1));
   run = RunApp("pushid-inspect", {Path("odd.json")});
-  EXPECT_TRUE(Contains(run.out, "3 more warnings by --details")) << run.out;
+  EXPECT_TRUE(Contains(run.out, "4 more warnings by --details")) << run.out;
   run = RunApp("pushid-inspect", {Path("odd.json"), "--details"});
   run.out = OneLine(run.out);
   const auto id = [&json](int i) { return json["recordings"][i]["id"].get<std::string>(); };

@@ -276,7 +276,7 @@ TEST_F(BadUsageTest, PushFlags) {
       {{"--frames=500:600"}, {id_, "frames 0 to"}},
       {{"--person=4"}, {id_, "no person 4"}},
       {{"--sensor=" + Path("none.csv")}, {"none.csv", "no such file"}},
-      {{sensor}, {"sensor.csv:3", "'nan'"}},
+      {{sensor}, {"sensor.csv:3", "force is missing"}},
       {{good_sensor, "--direction=a,b"}, {"--direction", "'a,b'"}},
   };
   for (const UsageCase& one : cases) {

@@ -124,7 +124,7 @@ TEST_F(PushesFromSensorsTest, OfAFileFromALoadCellWhoseRangeIsExceeded) {
         "pushid-push", {"--recordings=" + Path("quiet/manifest.json"), "--out=" + Path("p.csv"),
                         "--sensor=" + WriteText("cell.csv", text), "--overwrite"}));
     char said[64];
-    std::snprintf(said, sizeof said, "impulse %.2g", impulse);
+    std::snprintf(said, sizeof said, "impulse %.3g", impulse);
     EXPECT_TRUE(Contains(run.out, said));
     EXPECT_EQ(run.err.find("the sensor's range was exceeded") != std::string::npos, limit == 60.0)
         << run.err;

@@ -355,8 +355,9 @@ TEST_F(LoadRecordingsTest, BadFilesAreNamed) {
   EXPECT_EQ(Message(), Path("none.csv") + ": recording 'a': there is no such file");
   WriteText("bad.csv", "frame,fx,fy,ftheta,fphi\n0,1,2,3,x\n");
   entry().push_csv = "bad.csv";
-  EXPECT_EQ(Message(), Path("bad.csv") + ":2: recording 'a': fphi: 'x' is not a number; a value that is "
-                                 "missing is an empty cell or nan");
+  EXPECT_EQ(Message(), Path("bad.csv") +
+                           ":2: recording 'a': fphi: 'x' is not a number; a value that is "
+                           "missing is an empty cell or nan");
   entry().push_csv = "a.csv";
   BvhMotion motion = Walker(20);
   motion.values[18 * 7] = 1e300;

@@ -185,10 +185,9 @@ std::string AllAdvice(const FitResult& result) {
 TEST(Advice, RepeatsEveryChangedFlagOnceAndKeepsLists) {
   Provenance from;
   from.manifest = "my data/manifest.json";
-  from.configuration = {
-      {"preset", "group"},        {"pool", "none"},   {"interaction", "none"},
-      {"leave_out", "a,b"},       {"fix", "mu=3"},    {"seed", "1"},
-      {"preset_priors", "false"}, {"profile", "all"}, {"marker_noise", "0.14999999999999999"}};
+  from.configuration = {{"preset", "group"},        {"pool", "none"},   {"interaction", "none"},
+                        {"leave_out", "a,b"},       {"fix", "mu=3"},    {"seed", "1"},
+                        {"preset_priors", "false"}, {"profile", "all"}, {"marker_noise", "0.15"}};
   from.changed_flags = {"fix",  "interaction", "leave_out",     "marker_noise",
                         "pool", "preset",      "preset_priors", "profile"};
   const FitCommand same("pushid-fit", from);

@@ -67,7 +67,7 @@ TEST(BehaviourText, SettledAndUnstableIsSaidInOneSentence) {
   EXPECT_FALSE(Contains(text, "settle within")) << text;
   EXPECT_TRUE(Contains(text, "stand still after 2 s, but not for long")) << text;
   EXPECT_TRUE(Contains(text, "(UNSTABLE)")) << text;
-  EXPECT_TRUE(Contains(Advised(result), "--self_force=linear")) << Advised(result);
+  EXPECT_TRUE(Contains(Advised(result), "--prior=Kp_theta:2000:300")) << Advised(result);
   EXPECT_FALSE(Contains(Advised(result), "settling_weight")) << Advised(result);
   result.options.model.push_tail = PushTail::kNone;
   EXPECT_TRUE(Contains(Advised(result), "--push_tail=exponential")) << Advised(result);

@@ -79,7 +79,7 @@ TEST(FitCommand, WhatIsFixedIsNeitherFreeNorPooled) {
   from.configuration = {{"free", "mu"}, {"pool", "mu,a_x"}, {"fix", "c_q"}};
   from.changed_flags = {"free", "pool", "fix"};
   EXPECT_EQ(FitCommand("pushid-fit", from).Append("fix", "mu=3").ToString(),
-            "pushid-fit --recordings=M/manifest.json --free= --pool=a_x --fix=c_q,mu=3");
+            "pushid-fit --recordings=M/manifest.json --free='' --pool=a_x --fix=c_q,mu=3");
   from.configuration["pool"] = "mu";
   EXPECT_TRUE(
       Contains(FitCommand("pushid-fit", from).Append("fix", "mu").ToString(), "--pool=none"));

@@ -173,10 +173,10 @@ TEST(IntervalTable, HasOneRowPerNumber) {
   ASSERT_FALSE(AddBootstrap(recordings, {20, 1, 2}, nullptr, &model));
   const TextTable table = IntervalTable(model);
   const std::vector<std::string>& mu = table.rows()[1];
-  EXPECT_EQ(mu[0], "mu");
+  EXPECT_EQ(mu[0], "mu, N s/m");
   EXPECT_NE(mu[3], "-");
   EXPECT_NE(mu[4], "-");
-  EXPECT_EQ(mu[6], "identifiable");
+  EXPECT_EQ(mu[5], "identifiable");
   EXPECT_EQ(table.rows()[2][3], "-");
   EXPECT_NE(table.rows()[2][4], "-");
 }

@@ -1,9 +1,10 @@
 // Scores as JSON, and their means read back; what is damaged is refused with the key's name.
+#include "ident/validation/scores_json.h"
+
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "ident/validation/scores_report.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
