@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/futures_flags.h"
@@ -57,6 +58,21 @@ std::optional<BodyEvaluation> Bodies(const RestorationFlags& flags, const Identi
       SummarizeAll(bodies, scores, ParseLabelKeys(FLAGS_group_by)));
 }
 
+// Whether errors are of recordings that the model was fitted to, which predictions of new ones are
+// not; empty where they are not.
+std::string FittedText(const std::vector<PendulumRecording>& recordings) {
+  std::set<std::string> fitted;
+  const FittedModel model = OrFail(ReadFittedModel(ModelFile()));
+  for (const FittedRecording& r : model.fit.recordings) fitted.insert(r.content_hash);
+  const auto among = std::count_if(recordings.begin(), recordings.end(), [&](const auto& r) {
+    return !r.content_hash.empty() && fitted.count(r.content_hash) > 0;
+  });
+  if (among == 0) return "";
+  return " The model was fitted to " + std::to_string(among) + " of the " +
+         std::to_string(recordings.size()) +
+         " recordings; pushid-crossvalidate has the errors on recordings left out of the fit.";
+}
+
 int Run() {
   const RestorationFlags restoration = CheckedFlags();
   const int drawn = DrawnFutures();
@@ -79,6 +95,7 @@ int Run() {
                 bodies ? ("\n" + BodyText(*bodies)).c_str() : "");
   } else {
     Screen screen = EvaluationScreen(evaluation);
+    screen.verdict += FittedText(pendulums);
     screen.paragraphs.push_back(steps);
     if (bodies) screen.tables.push_back(BodyTable(*bodies));
     std::printf("%s", screen.ToString().c_str());

@@ -526,8 +526,7 @@ std::vector<std::string> MassTexts(const std::vector<PendulumRecording>& recordi
   for (const auto& [id, range] : masses) {
     if (range.second <= kSameMass * range.first) continue;
     texts.push_back(id + " weighs " + Rounded(range.first, 3) + " to " + Rounded(range.second, 3) +
-                    " kg: one id is one person; give different people different ids, or correct "
-                    "the masses");
+                    " kg: one id is one person; correct the masses or the ids");
   }
   return texts;
 }

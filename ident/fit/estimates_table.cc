@@ -172,8 +172,8 @@ void AddClusterWarning(const Uncertainty& u, Warnings* warnings) {
         std::to_string(kFewestPeople));
   } else if (u.num_clusters < kFewClusters) {
     const std::string many = unit == "person" ? "people" : "recordings";
-    warnings->emplace_back("the independent units are " + std::to_string(u.num_clusters) + " " +
-                           many + ", fewer than ten: the standard errors are themselves uncertain");
+    warnings->emplace_back(std::to_string(u.num_clusters) + " " + many +
+                           ", fewer than ten: the standard errors are themselves uncertain");
   }
 }
 
@@ -207,9 +207,9 @@ void AddSettlingWarning(const Uncertainty& u, const ModelOptions& model, size_t 
   const SettlingDemand& s = u.settling;
   if (!s.binds) return;
   const std::string wanted =
-      "without the settling constraint the model " +
-      (std::isfinite(s.free_seconds) ? "settles after " + Rounded(s.free_seconds, 2) + " s"
-                                     : std::string("does not settle within 10 s"));
+      "unconstrained, the model " + (std::isfinite(s.free_seconds)
+                                         ? "settles after " + Rounded(s.free_seconds, 2) + " s"
+                                         : std::string("does not settle within 10 s"));
   if (s.unmet) {
     warnings->emplace_back(wanted + ", and no fit that settles within " + WaitText(model) +
                            " was found: the constraint was dropped");
@@ -238,8 +238,8 @@ void AddSettlingWarning(const Uncertainty& u, const ModelOptions& model, size_t 
     what += (what.empty() ? "" : ", and ") + held + " to where nothing else holds it";
   }
   if (what.empty()) what = "no parameter by half a standard error";
-  warnings->emplace_back(wanted + "; the constraint to settle within " + WaitText(model) +
-                         " moved " + what);
+  warnings->emplace_back(wanted + "; the settling constraint (" + WaitText(model) + ") moved " +
+                         what);
 }
 
 }  // namespace

@@ -93,6 +93,7 @@ ReportSection ParameterSection(const FittedModel& model) {
   section.Show("", DerivedTable(model.fit));
   section.Show("what the intervals are made of", PartsTable(model.fit));
   if (model.fit.verdict.checked()) {
+    section.Say(ModelVerdictText(model.fit.verdict));
     section.Show("taken as known, and what the recordings say of it", AssumptionTable(model.fit));
   }
   section.figures.push_back(IntervalFigure(model, false));

@@ -75,6 +75,8 @@ TEST_F(EvaluateAppTest, ScoresStandUnderTheAgreedKeys) {
        {"mean over recordings", "frame-weighted", "constant velocity", "\nsteps: "}) {
     EXPECT_TRUE(Contains(run.out, part));
   }
+  EXPECT_TRUE(Contains(OneLine(Succeeded(RunApp("pushid-evaluate", {model, Recordings()})).out),
+                       "The model was fitted to 12 of the 12 recordings"));
 }
 
 TEST_F(EvaluateAppTest, AWhatIfChangesTheScores) {

@@ -25,7 +25,7 @@ FittedModel OfPreset(const std::string& name) {
     const EstimateStatus status = spec.free ? EstimateStatus::kIdentified : EstimateStatus::kFixed;
     result.estimates.push_back({spec.name,
                                 spec.unit,
-                                spec.nominal,
+                                result.parameters[spec.id],
                                 0.1,
                                 0.02,
                                 spec.lower,
@@ -47,7 +47,7 @@ FittedModel OfPreset(const std::string& name) {
   SolveStart start;
   start.kind = "nominal";
   start.from.shared = start.to.shared = std::vector<double>(free, 0.5);
-  start.stages = {{8, 12, 9.0, 1.5, true, {}}};
+  start.stages = {{8, 12, 9.0, 1.5, true, {}, {}}};
   result.starts = {start};
   result.best_start = 0;
   result.warnings = {Warning("a warning")};

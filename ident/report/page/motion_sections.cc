@@ -447,7 +447,7 @@ ReportSection LeadSection(const ReportSource& source) {
   if (!known.numbers.empty()) section.figures.push_back(known);
   // What to do next stands below the figures, and the rest of what is known below that.
   std::rotate(section.paragraphs.begin(), section.paragraphs.end() - 1, section.paragraphs.end());
-  const std::string verdict = FirstSentences(source.fit);
+  const std::string verdict = FirstSentences(source.fit, !source.fit.verdict.fails());
   section.verdict_first = !source.fit.verdict.fails() && source.fit.verdict.none_identified.empty();
   if (section.verdict_first) {
     section.paragraphs.insert(section.paragraphs.begin(), verdict);
