@@ -27,7 +27,7 @@ DEFINE_string(group_by, pushid::LabelKeysText(pushid::UsualGroups()),
               "labels that scores are grouped by: subject, or any label of the manifest");
 DEFINE_string(json_out, "", "write the scores here (JSON)");
 DEFINE_bool(details, false, "print all tables instead of one screen");
-DEFINE_bool(per_recording, false, "print them, and a line and the steps of every recording");
+DEFINE_bool(per_recording, false, "print all tables, and a line and the steps of every recording");
 
 namespace {
 

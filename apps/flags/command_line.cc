@@ -115,9 +115,9 @@ std::string HeadingOf(const FlagInfo& flag) {
   return "settings";
 }
 
-// What people use, in this order of all programs: --help shows the first ten that a program has.
+// The flags that people use most, of all programs: --help shows the first ten that a program has.
 constexpr char kMostUsed[] =
-    "plan jobs list dry_run gather shard summary job folder pattern push_pattern push_kind masses "
+    "plan jobs dry_run gather shard summary job folder pattern push_pattern push_kind masses "
     "formation model from to recordings setting more_settings id people group_size "
     "recordings_per_person push spacing sensor compare scheme kind model_out out update protocol "
     "window html_out figures_out json_out svg_out mass mapping wave restoration push_scale "

@@ -15,9 +15,13 @@ namespace pushid {
 namespace {
 
 constexpr std::size_t kMostColumns = 100000;
-constexpr double kEvenness = 0.01;           // of a time step
-constexpr double kSurelyMilliseconds = 0.5;  // between rows; nothing is recorded as rarely in s
-// Plain names of times: in ms, in what their file says nothing of, in s.
+constexpr double kEvenness = 0.01;  // of a time step
+// Times of so many rows that grow by so much from row to row are in ms: nothing is recorded as
+// rarely in s for so long, while knots drawn by hand may lie a second apart.
+constexpr double kSurelyMilliseconds = 0.5;
+constexpr int kSurelyRecorded = 50;
+// Names of time columns as PlainName has them: first those in ms, then those without a unit, then
+// those in s.
 constexpr const char* kTimes[] = {"timems", "tms", "time",    "t",
                                   "times",  "ts",  "timesec", "seconds"};
 constexpr int kInMilliseconds = 2, kInSecondsSurely = 4;
@@ -27,14 +31,17 @@ int TimeNameOf(const std::string& name) {
                           std::begin(kTimes));
 }
 
-void TurnTimesToSeconds(NumericTable* table) {
-  const int index = FindTimeColumn(table->names, "");
-  const auto found = std::find(table->chosen.begin(), table->chosen.end(), index);
-  if (index < 0 || found == table->chosen.end() || table->num_rows() < 2) return;
+// Storage files have their times in s by definition.
+void TurnTimesToSeconds(TableFormat format, NumericTable* table) {
+  const auto found = std::find_if(table->chosen.begin(), table->chosen.end(), [table](int column) {
+    return TimeNameOf(table->names[column]) < static_cast<int>(std::size(kTimes));
+  });
+  if (found == table->chosen.end() || table->num_rows() < 2) return;
   std::vector<double>& time = table->data[found - table->chosen.begin()];
   const double step = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
-  const int name = TimeNameOf(table->names[index]);
-  if (name >= (step >= kSurelyMilliseconds ? kInSecondsSurely : kInMilliseconds)) return;
+  const bool surely = format == TableFormat::kCsv && step >= kSurelyMilliseconds &&
+                      table->num_rows() >= kSurelyRecorded;
+  if (TimeNameOf(table->names[*found]) >= (surely ? kInSecondsSurely : kInMilliseconds)) return;
   for (double& t : time) t /= 1000.0;
 }
 
@@ -67,7 +74,7 @@ class TableReader {
       return reader_.ErrorHere("the header declares " + std::to_string(announced_rows_) +
                                " rows, the file has " + std::to_string(rows));
     }
-    TurnTimesToSeconds(&table_);
+    TurnTimesToSeconds(format_, &table_);
     table_.content_hash = reader_.HashHex();
     return std::move(table_);
   }
@@ -234,7 +241,9 @@ std::string PlainName(std::string_view name) {
   std::string plain;
   for (char c : name) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) plain += c;
+    // A sign before the name and the letters of other alphabets say what the plain name does not.
+    const bool other = static_cast<unsigned char>(c) >= 0x80 || (c == '-' && plain.empty());
+    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || other) plain += c;
   }
   return plain;
 }

@@ -7,8 +7,8 @@
 //   separated by blanks, or by tabs, between which cells may be empty.
 //
 // Cells that are empty, NaN, nan or n/a are missing and come out as NaN. Times in ms come out in s:
-// those of a column called so (time_ms), and of one called time or t that grows by 0.5 or more a
-// row, as nothing is recorded so rarely.
+// those of a column called so (time_ms), and of a CSV column called time or t that grows by 0.5 or
+// more a row for 50 rows, as nothing is recorded so rarely.
 #pragma once
 
 #include <functional>
@@ -50,7 +50,8 @@ struct TableReadOptions {
 Result<NumericTable> ReadNumericTable(const std::string& path, TableFormat format,
                                       const TableReadOptions& options = {});
 
-// Its letters and digits, small: "Force (N)" is "forcen".
+// The letters and digits of a name in lower case: "Force (N)" is "forcen". A minus before it and
+// letters of other alphabets are kept, so that "-Fx" and "Time (µs)" are no other names.
 std::string PlainName(std::string_view name);
 
 // The column that holds the time: `wanted` when given, otherwise time, t, time_s, "Time (ms)", ...;

@@ -202,8 +202,9 @@ class Platform {
     for (int c : levers) scale_[c] = MetresPer(unit);
     if (unknown.empty() && unit == unit_) return;
     Warn("has channels " +
-         (unknown.empty() ? "without a unit"
-                          : "in " + ListOfNames({unknown.begin(), unknown.end()})) +
+         (unknown.empty()
+              ? (platform_.type == 4 ? "whose CAL_MATRIX names no unit" : "without a unit")
+              : "in " + ListOfNames({unknown.begin(), unknown.end()})) +
          " (ANALOG:UNITS), which are read as N" + (levers.empty() ? "" : " and N " + NameOf(unit)) +
          (unit == unit_ ? "" : ": N " + NameOf(unit_) + " gives no centre of pressure on it"));
   }
@@ -248,7 +249,7 @@ class Platform {
       least = std::min(least, part);
       most = std::max(most, part);
     }
-    // Whoever stood there stays, or leaves; an offset stays while somebody comes.
+    // A person who stood there stays or leaves; an offset stays while somebody comes.
     const bool stays = std::max(-least, most) < 0.5, leaves = std::fabs(least + 1.0) < 0.2;
     if (std::fabs(load) > kLoadedZero && (stays || leaves)) {
       return Warn(zero + ", in which it is loaded with " + Rounded(std::fabs(load), 3) +

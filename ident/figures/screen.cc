@@ -47,13 +47,13 @@ size_t NumLines(const std::string& text) {
   return static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-// As much as one line has room for.
+// The first line of a text, with ... where it was cut.
 std::string FirstLine(const std::string& text) {
   const std::vector<std::string> lines = BrokenLine(text, kTextColumns - 4);
   return lines.front() + (lines.size() > 1 ? " ...\n" : "\n");
 }
 
-// Without its last rows, which are named below it.
+// The table without its last rows, whose names stand below it.
 std::string CutTable(const TextTable& table, size_t kept) {
   const auto& rows = table.rows();
   if (kept + 1 >= rows.size()) return table.ToString();

@@ -228,7 +228,7 @@ ByPersonAndValue Apart(const Recordings& recordings, const std::string& label) {
   return apart;
 }
 
-// Options for people one by one: as of the joint fit, without slopes, pools and settled weights.
+// Options for people one by one: as of the joint fit, without slopes, pools and its deviations.
 FitOptions OfOnePerson(FitOptions options) {
   options.contrast.clear();
   options.num_threads = 1;
@@ -277,23 +277,29 @@ void JudgeContrastByPeople(const std::vector<PendulumRecording>& recordings, Fit
   if (apart.empty()) return;
   const FitOptions options = OfOnePerson(fitted);
   const std::vector<ByPersonAndValue::value_type> people(apart.begin(), apart.end());
-  std::vector<std::optional<ParameterSet<double>>> own(people.size());
-  ParallelFor(static_cast<int>(people.size()), fitted.num_threads, [&](int i) {
-    const Result<IdentifiedModel> model = SolveModel(people[i].second, options);
-    if (model.ok()) own[i] = model.value().parameters;
-  });
-  if (!std::all_of(own.begin(), own.end(), [](const auto& one) { return one.has_value(); })) return;
+  std::vector<std::optional<Result<IdentifiedModel>>> own(people.size());
+  ParallelFor(static_cast<int>(people.size()), fitted.num_threads,
+              [&](int i) { own[i].emplace(SolveModel(people[i].second, options)); });
+  for (size_t i = 0; i < people.size(); ++i) {
+    if (own[i]->ok()) continue;
+    result->warnings.emplace_back("the contrast is judged by the joint fit, as " +
+                                  people[i].first.first +
+                                  " cannot be fitted alone: " + own[i]->error().message);
+    return;
+  }
   for (ContrastRow& row : contrast.rows) {
     const ParameterSpec* spec = fitted.table.Find(row.name);
     std::vector<OwnEstimate> estimates;
+    bool free = row.status != EstimateStatus::kUnidentifiable;
     for (size_t i = 0; i < people.size(); ++i) {
       const auto& [person, value] = people[i].first;
-      estimates.push_back(
-          {person, value == contrast.second, ToFitted(spec->transform, (*own[i])[spec->id])});
+      const IdentifiedModel& model = own[i]->value();
+      // What one person's pushes say nothing of is held there, and no estimate.
+      free = free && model.table[spec->id].free;
+      estimates.push_back({person, value == contrast.second,
+                           ToFitted(spec->transform, model.parameters[spec->id])});
     }
-    if (row.status != EstimateStatus::kUnidentifiable) {
-      JudgeByPeople(spec->transform, estimates, &row);
-    }
+    if (free) JudgeByPeople(spec->transform, estimates, &row);
   }
   CorrectForRows(&contrast);
 }

@@ -141,19 +141,22 @@ StepTiming TimingOf(const PendulumRecording& recording, const Prediction& predic
 constexpr double kStrongerPush = 1.4;
 constexpr int kFramesPastTheEnd = 40;
 
-RecordingScore FailedScore(const PendulumRecording& recording, const std::string& failure) {
+RecordingScore FailedScore(const PendulumRecording& recording, const std::string& failure,
+                           int observed) {
   RecordingScore score;
   score.id = recording.id;
   score.frames = recording.num_frames();
   score.fell = true;
   score.failure = failure;
-  score.value = ScoreHip(recording, StaticBaseline(recording), 0).value;  // of the second mean
+  score.value =
+      ScoreHip(recording, StaticBaseline(recording), observed).value;  // of the second mean
   return score;
 }
 
 RecordingScore ScoreOf(const IdentifiedModel& model, const PendulumRecording& recording,
                        const Prediction& prediction, int observed) {
-  if (!prediction.status.ok) return FailedScore(recording, OutsideText(prediction.status));
+  if (!prediction.status.ok)
+    return FailedScore(recording, OutsideText(prediction.status), observed);
   RecordingScore score = ScoreHip(recording, prediction.hip, observed);
   AddContactFigures(model, recording, prediction, &score.propagation);
   score.fell = AnybodyFalls(prediction);
@@ -343,16 +346,16 @@ RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording&
     RecordingScore score = ScoreOf(model, recording, Predict(model, recording), 0);
     if (draws.count == 0 || !score.failure.empty()) return score;
     const Result<Futures> futures = DrawFutures(model, recording, draws.count, draws.seed);
-    if (!futures.ok()) return FailedScore(recording, futures.error().message);
+    if (!futures.ok()) return FailedScore(recording, futures.error().message, 0);
     if (futures.value().paths.size() < 2) {
-      return FailedScore(recording, "fewer than two drawn futures stay in the model's domain");
+      return FailedScore(recording, "fewer than two drawn futures stay in the model's domain", 0);
     }
     ScoreDraws(recording, futures.value().paths, &score);
     return score;
   }
   Result<OnlinePredictor> made =
       OnlinePredictor::Make(model, recording, recording.num_frames(), use);
-  if (!made.ok()) return FailedScore(recording, made.error().message);
+  if (!made.ok()) return FailedScore(recording, made.error().message, observed);
   OnlinePredictor& predictor = made.value();
   for (int t = 1; t < observed; ++t) predictor.Observe(FrameAt(recording, t));
   const Prediction prediction = predictor.Predict();

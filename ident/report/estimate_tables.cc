@@ -533,7 +533,10 @@ std::string DifferText(const Contrast& c) {
   for (const ContrastRow& row : c.rows) {
     if (row.p_holm < kHolmLevel) found += (found.empty() ? "" : ", ") + row.name;
   }
-  const std::string of = CountText(c.rows.size(), "parameter");
+  const auto told = std::count_if(c.rows.begin(), c.rows.end(), [](const ContrastRow& row) {
+    return row.status != EstimateStatus::kUnidentifiable;
+  });
+  const std::string of = CountText(static_cast<size_t>(told), "parameter");
   return found.empty()
              ? "after Holm's correction for " + of + " no difference is distinguishable from 0"
              : "after Holm's correction for " + of + " these differ: " + found;

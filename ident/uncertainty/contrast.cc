@@ -116,7 +116,6 @@ bool JudgeByPeople(Transform transform, const std::vector<OwnEstimate>& people, 
     moves[one.person][one.second] += off / std::sqrt(n * (n - 1.0));
     within += off * off / (count[0] + count[1] - 2.0);
   }
-  if (!(within > 0.0)) return false;
   const auto variance = [&moves](double by_first, double by_second) {
     double sum = 0.0;
     for (const auto& [person, move] : moves) {
@@ -127,6 +126,7 @@ bool JudgeByPeople(Transform transform, const std::vector<OwnEstimate>& people, 
   };
   const double of_people = static_cast<double>(moves.size());
   const double v = variance(1.0, 1.0), first = variance(1.0, 0.0), second = variance(0.0, 1.0);
+  if (!(within > 0.0 && v > 0.0)) return false;
   const bool apart = of_people == count[0] + count[1];
   const double freedom =
       apart ? v * v / (first * first / (count[0] - 1.0) + second * second / (count[1] - 1.0))

@@ -13,7 +13,7 @@
 //                The chance of any false positive among them is then at most the level.
 //
 // People who were recorded alone are judged by a t-test of their own fits instead (OwnEstimate),
-// which finds twice as many true differences at the same share of false ones
+// which finds as many true differences as a test in two stages does, the joint fit half of them
 // (tests/studies/contrast.py): the joint fit weighs everything that nothing excited against the
 // data, and counts the width of priors as scatter.
 #pragma once
@@ -61,9 +61,11 @@ struct OwnEstimate {
   double fitted = 0.0;  // on the fitted scale
 };
 
-// Student's test of people's own estimates, each person once a value: paired by person where all
-// have both values, else Welch's. Sets values (means on the fitted scale), difference, interval, p
-// and effect. false, and nothing set: fewer than two people with a value, or no scatter.
+// Student's test of people's own estimates, each person once a value: Welch's where nobody has both
+// values, paired by person where all have; where some have, by the covariance of these, with one
+// degree of freedom less than the smaller group has people. Sets values (means on the fitted
+// scale), difference, interval, p and effect. false, and nothing set: fewer than two people with a
+// value, or no scatter.
 bool JudgeByPeople(Transform transform, const std::vector<OwnEstimate>& people, ContrastRow* row);
 
 // Holm's p of all rows; those that are unidentifiable are not counted.

@@ -10,7 +10,6 @@
 #include "ident/model/model_json.h"
 #include "ident/parameters/json_archive.h"
 #include "ident/prediction/predicted_steps.h"
-#include "ident/validation/scores_json.h"
 
 namespace pushid {
 

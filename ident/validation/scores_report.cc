@@ -4,12 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/model/model_json.h"
-#include "ident/parameters/json_archive.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/validation/scores_json.h"
 
@@ -136,8 +133,8 @@ std::string FailuresText(const std::string& name, const ScoreSummary& summary,
   if (failed.empty()) return "";
   return name + " fails in " + std::to_string(failed.size()) + " of " +
          std::to_string(summary.recordings.size()) +
-         " recordings, which are in no mean: " + Joined(failed, "; ") + "; " + NamesText(shown) +
-         " with those of the static baseline there: " +
+         " recordings, which are in no mean: " + ListOfNames(failed, 3, "recordings") + "; " +
+         NamesText(shown) + " with those of the static baseline there: " +
          Joined(PlainCells(MeanWithStatic(summary), shown), " / ") + "\n";
 }
 
@@ -152,10 +149,6 @@ bool OfThoseWhoMoveInBoth(int figure) {
 std::string CountsText(double part, double whole) {
   return Rounded(part, 3) + " of " + Rounded(whole, 4);
 }
-
-}  // namespace
-
-namespace {
 
 // Means of the model and of the baselines; all: weighted by frames too, and by every label.
 TextTable MeansTable(const Evaluation& evaluation, bool all) {
@@ -205,15 +198,16 @@ TextTable RecordingsTable(const Evaluation& evaluation) {
 // "The model's error is 0.49 times that of the best baseline (constant velocity)."
 std::string RatioText(const Evaluation& evaluation) {
   const MetricId metric = TableMetrics(evaluation.model.observed).front();
+  // Of all recordings, so that a failure in a hard one makes no model better.
+  const auto error = [metric](const ScoreSummary& s) { return MeanWithStatic(s)[metric]; };
   const BaselineSummary* best = nullptr;
   for (const BaselineSummary& baseline : evaluation.baselines) {
-    const MeanScore& mean = baseline.summary.mean;
-    if (mean.recordings == 0) continue;
-    if (best == nullptr || mean.value[metric] < best->summary.mean.value[metric]) best = &baseline;
+    if (baseline.summary.mean.recordings == 0) continue;
+    if (best == nullptr || error(baseline.summary) < error(best->summary)) best = &baseline;
   }
   if (evaluation.model.mean.recordings == 0) return "The model predicts no recording.";
   if (best == nullptr) return "";
-  const double ratio = evaluation.model.mean.value[metric] / best->summary.mean.value[metric];
+  const double ratio = error(evaluation.model) / error(best->summary);
   return "The model's error is " + Rounded(ratio, 2) + " times that of the best baseline (" +
          best->name + ")" + (ratio < 1.0 ? "." : ": do not predict with it.");
 }
@@ -250,11 +244,6 @@ Screen EvaluationScreen(const Evaluation& evaluation) {
   }
   const std::string travels = TravelText(m.propagation);
   screen.paragraphs.push_back((travels.empty() ? "" : "how pushes travel: ") + travels);
-  Warnings failures;
-  for (const RecordingScore& r : m.recordings) {
-    if (!r.failure.empty()) failures.emplace_back(r.id + ": " + r.failure, r.id, r.failure);
-  }
-  screen.warnings = GroupedWarnings(failures);
   screen.rest =
       "the rest: --details; recordings and steps: --per_recording; all numbers: --json_out";
   return screen;
@@ -451,9 +440,9 @@ Screen CrossValidationScreen(const std::vector<CrossValidation>& candidates) {
   const CrossValidation* rival = nullptr;  // the best of the others
   for (const CrossValidation& one : candidates) {
     const PairedDifference difference = Compare(own, one);
-    const bool compared = &one != &own && difference.recordings > 0;
-    if (compared && (rival == nullptr ||
-                     one.summary.mean.value[kHipAde] < rival->summary.mean.value[kHipAde])) {
+    const bool compared = &one != &own && difference.clusters > 1;
+    if (compared && (rival == nullptr || MeanWithStatic(one.summary)[kHipAde] <
+                                             MeanWithStatic(rival->summary)[kHipAde])) {
       rival = &one;
     }
     table.Add({one.predictor, MeanText(one.summary.mean, shown),

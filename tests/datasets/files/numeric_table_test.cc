@@ -88,15 +88,29 @@ TEST_F(NumericTableTest, TimesInMilliseconds) {
       {"\"Time [s]\"", "2", 2.0}, {"time(s)", "0.1", 0.1},   {"TIME (sec)", "0.1", 0.1},
   };
   for (const auto& one : cases) {
-    const NumericTable read = Unwrapped(ReadNumericTable(
-        WriteText("a.csv", std::string(one.name) + ",a\n0,1\n" + one.step + ",2\n"),
-        TableFormat::kCsv));
+    std::string text = std::string(one.name) + ",a\n";
+    for (int i = 0; i < 60; ++i) text += std::to_string(i * std::stod(one.step)) + ",1\n";
+    const NumericTable read =
+        Unwrapped(ReadNumericTable(WriteText("a.csv", text), TableFormat::kCsv));
     EXPECT_EQ(FindTimeColumn(read.names, ""), 0) << one.name;
-    EXPECT_EQ(Unwrapped(EvenTimeStep(read, 0)), one.seconds) << one.name;
+    EXPECT_NEAR(Unwrapped(EvenTimeStep(read, 0)), one.seconds, 1e-9) << one.name;
   }
-  for (const char* name : {"timing", "ms", "frame", "times_walked"}) {
+  for (const char* name : {"timing", "ms", "frame", "times_walked", "Time (\xC2\xB5s)"}) {
     EXPECT_EQ(FindTimeColumn({name}, ""), -1) << name;
   }
+}
+
+// A push that was drawn by hand, and a storage file, whose times are in s by definition.
+TEST_F(NumericTableTest, FewTimesAndThoseOfStorageFilesStayInSeconds) {
+  const NumericTable drawn = Unwrapped(
+      ReadNumericTable(WriteText("a.csv", "time,force\n0,0\n0.5,90\n1,0\n"), TableFormat::kCsv));
+  EXPECT_EQ(drawn.data[0][2], 1.0);
+  std::string text = "f\nendheader\ntime\ta\n";
+  for (int i = 0; i < 60; ++i) text += std::to_string(i) + "\t1\n";
+  const NumericTable stored =
+      Unwrapped(ReadNumericTable(WriteText("a.mot", text), TableFormat::kStorage));
+  EXPECT_EQ(stored.data[0][59], 59.0);
+  EXPECT_EQ(PlainName("-Fx"), "-fx") << "a force of the other sign is another column";
 }
 
 // Where it jumps, not at the first row.
