@@ -422,7 +422,9 @@ const PlateCase kPlateCases[] = {
        p->calibration.assign(36, 0.0);
        for (int i = 0; i < 6; ++i) p->calibration[7 * i] = i < 3 ? 1.0 : 1e-3;
      },
-     "has channels without a unit (ANALOG:UNITS), which are read as N and N m: N mm gives no", 50},
+     "has channels whose CAL_MATRIX names no unit (ANALOG:UNITS), which are read as N and N m: N "
+     "mm gives no",
+     50},
     {"corners_in_m",
      [](PlateFile* p) {
        for (double& corner : p->corners) corner *= 1e-3;

@@ -38,7 +38,7 @@ TEST_F(SensorCsv, ReadsWhatIsPlain) {
         "\"time\",\"force\"\n\"0\",\"1\"\n\"0.01\",\"2\"\n\"0.02\",\"3\"\n",
         "Time (s),Force (N)\n0,1\n0.01,2\n0.02,3\n", "t[s];force[N]\n0;1\n0.01;2\n0.02;3\n",
         "time_ms,force\n0,1\n10,2\n20,3\n", "Time (ms),Force (N)\n0,1\n10,2\n20,3\n",
-        "time,force\n0,1\n10,2\n20,3\n", "# logged\ntime_s,force_N\n0,1\n0.01,2\n0.02,3\n",
+        "# logged\ntime_s,force_N\n0,1\n0.01,2\n0.02,3\n",
         "time,force,\n0,1,\n0.01,2,\n0.02,3,\n"}) {
     const auto record = Unwrapped(ReadSensorCsv(WriteText("s.csv", text)));
     EXPECT_EQ(record.time_s, (std::vector<double>{0.0, 0.01, 0.02})) << text;
