@@ -62,7 +62,7 @@ std::string CutTable(const TextTable& table, size_t kept) {
   TextTable shown(header);
   for (size_t i = 1; i < rows.size(); ++i) {
     if (i <= kept) shown.Add(rows[i]);
-    if (i > kept && !rows[i].empty()) cut.push_back(rows[i][0]);
+    if (i > kept && !rows[i].empty()) cut.push_back(rows[i][0].substr(0, rows[i][0].find(", ")));
   }
   return shown.ToString() +
          FirstLine(std::to_string(cut.size()) + " more by --details: " + Joined(cut));

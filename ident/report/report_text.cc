@@ -154,21 +154,22 @@ std::optional<Interval> BootstrapInterval(const FittedModel& model, const std::s
 }
 
 TextTable IntervalTable(const FittedModel& model) {
-  TextTable table({"95 % intervals", ">value", "clustered", "profile", "bootstrap", "class",
-                   "by the data alone"});
+  TextTable table({"95 % intervals", ">value", "clustered", "profile", "bootstrap", "class"});
   const auto add = [&](const auto& row) {
     const auto profile = ProfileInterval(model, row.name);
     const auto bootstrap = BootstrapInterval(model, row.name);
     if (!profile && !bootstrap) return;
-    std::string classification, by_data_alone;
+    std::string classification;
     for (const Profile& p : model.profiles) {
       if (p.name != row.name) continue;
       classification = NameOf(p.classification);
-      if (p.by_data_alone) by_data_alone = NameOf(*p.by_data_alone);
+      if (p.by_data_alone && *p.by_data_alone != p.classification) {
+        classification += ", by the data alone " + NameOf(*p.by_data_alone);
+      }
     }
     table.Add({WithUnit(row.name, row.unit), Rounded(row.value, 3),
                IntervalText(row.value, row.lower95, row.upper95, 3), OrDash(row.value, profile),
-               OrDash(row.value, bootstrap), classification, by_data_alone});
+               OrDash(row.value, bootstrap), classification});
   };
   for (const Estimate& e : model.fit.estimates) {
     if (e.status != EstimateStatus::kFixed) add(e);
