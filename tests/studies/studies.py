@@ -98,7 +98,10 @@ def on_recordings(program, setting, *arguments, **options):
 def printed_table(program, *arguments):
     """The cells of a table that a study in C++ printed, without its header, and the line after it."""
     lines = run(program, *arguments, out=None).text.splitlines()
-    rows = [[cell.strip() for cell in line.split("  ") if cell.strip()] for line in lines[1:-1]]
+    rows = []
+    for part in "\n".join(lines[:-1]).split("\n\n"):  # a wide table is broken, its first column repeated
+        cells = [[cell.strip() for cell in line.split("  ") if cell.strip()] for line in part.splitlines()[1:]]
+        rows = [row + more[1:] for row, more in zip(rows, cells)] if rows else cells
     return rows, lines[-1]
 
 
