@@ -138,7 +138,7 @@ struct ErrorFinder : nlohmann::detail::json_sax_acceptor<nlohmann::json> {
   }
 };
 
-// What people write by hand that JSON has not, at the place where the parser could not go on.
+// A hint at syntax that people write by hand and JSON has not, where the parser could not go on.
 std::string SyntaxHint(const std::string& text, std::size_t at) {
   if (at >= text.size()) return "";
   const std::string_view rest = std::string_view(text).substr(at);

@@ -68,7 +68,7 @@ struct Inspection {
 // file that is cut short is read as far as it goes, with a warning.
 Result<Inspection> Inspect(const std::string& path, const ColumnMapping& mapping = {});
 
-// What people weigh in one recording and in another where that differs by more than 5 %: an id is
+// Masses of one person that differ by more than 5 % between recordings: an id is
 // one person. "S01 weighs 62.7 to 70 kg: ..."
 std::vector<std::string> MassTexts(const std::vector<PendulumRecording>& recordings);
 

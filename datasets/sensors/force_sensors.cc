@@ -53,7 +53,7 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
-// Of platforms, m: beyond them a length is in another unit than the file says.
+// Lengths of platforms, m: beyond them a length is in another unit than the file says.
 constexpr double kLeastSide = 0.005, kMostSide = 20.0, kLeastOrigin = 5e-4, kMostOrigin = 2.0;
 constexpr double kLeastLever = 1e-3;   // m, from the middle to where people press, at the median
 constexpr double kLoadedZero = 200.0;  // N; less may be an offset

@@ -294,7 +294,7 @@ void JudgeContrastByPeople(const std::vector<PendulumRecording>& recordings, Fit
     for (size_t i = 0; i < people.size(); ++i) {
       const auto& [person, value] = people[i].first;
       const IdentifiedModel& model = own[i]->value();
-      // What one person's pushes say nothing of is held there, and no estimate.
+      // A parameter that one person's pushes say nothing of is held there, and is no estimate.
       free = free && model.table[spec->id].free;
       estimates.push_back({person, value == contrast.second,
                            ToFitted(spec->transform, model.parameters[spec->id])});

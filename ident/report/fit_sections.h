@@ -12,7 +12,7 @@ namespace pushid {
 // Gains, what to do next and the values; more: a paragraph before what to do.
 ReportSection ShortSection(const FittedModel& model, const std::string& more = "");
 ReportSection SummarySection(const FittedModel& model);
-// What it warns of: the fit's warnings, then findings about the recordings.
+// Warnings: those of the fit, then findings about the recordings.
 std::vector<std::string> WarningTexts(const FitResult& result);
 ReportSection BehaviourSection(const FittedModel& model);
 ReportSection LoopSection(const FittedModel& model);

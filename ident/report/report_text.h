@@ -18,7 +18,7 @@ namespace pushid {
 // the numbers of its tests, and with its first finding alone.
 std::string FirstSentences(const FitResult& result, bool brief = false);
 
-// What a fit says first: verdict, values, gains, warnings, and the first advice. Everything else is
+// The first screen of a fit: verdict, values, gains, warnings, and the first advice. The rest is
 // in BuildReport of page/build_report.h.
 Screen ScreenOf(const FittedModel& model);
 

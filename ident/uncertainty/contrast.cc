@@ -108,7 +108,7 @@ bool JudgeByPeople(Transform transform, const std::vector<OwnEstimate>& people, 
   if (std::min(count[0], count[1]) < 2.0) return false;
   for (const OwnEstimate& one : people) mean[one.second] += one.fitted / count[one.second];
 
-  // What each person moves the two means by, with Bessel's correction.
+  // Moves of the two means by each person, with Bessel's correction.
   std::map<std::string, std::array<double, 2>> moves;
   double within = 0.0;
   for (const OwnEstimate& one : people) {

@@ -54,7 +54,7 @@ std::vector<double> HolmCorrected(const std::vector<double>& p);
 // where nothing is known of the error.
 double ProbabilityOfZero(const Scatter& scatter, const Eigen::VectorXd& coefficients, double value);
 
-// What a person's own recordings with one value of the label alone give for a parameter.
+// A parameter's estimate by a person's own recordings with one value of the label alone.
 struct OwnEstimate {
   std::string person;
   bool second = false;  // value of the label

@@ -198,7 +198,7 @@ TextTable RecordingsTable(const Evaluation& evaluation) {
 // "The model's error is 0.49 times that of the best baseline (constant velocity)."
 std::string RatioText(const Evaluation& evaluation) {
   const MetricId metric = TableMetrics(evaluation.model.observed).front();
-  // Of all recordings, so that a failure in a hard one makes no model better.
+  // The mean of all recordings, so that a failure in a hard one makes no model better.
   const auto error = [metric](const ScoreSummary& s) { return MeanWithStatic(s)[metric]; };
   const BaselineSummary* best = nullptr;
   for (const BaselineSummary& baseline : evaluation.baselines) {

@@ -445,7 +445,7 @@ ReportSection LeadSection(const ReportSource& source) {
     section.figures.push_back(*typical);
   const ReportFigure known = IntervalFigure(source.model, true);
   if (!known.numbers.empty()) section.figures.push_back(known);
-  // What to do next stands below the figures, and the rest of what is known below that.
+  // The next step stands below the figures, and the rest of what is known below that.
   std::rotate(section.paragraphs.begin(), section.paragraphs.end() - 1, section.paragraphs.end());
   const std::string verdict = FirstSentences(source.fit, !source.fit.verdict.fails());
   section.verdict_first = !source.fit.verdict.fails() && source.fit.verdict.none_identified.empty();
