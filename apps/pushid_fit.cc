@@ -38,7 +38,7 @@ int Run() {
   const double begin = Now();
   if (FLAGS_replica < 0) return Fail("--replica must not be negative");
   if (FLAGS_list_parameters) {
-    std::printf("%s", ParameterGlossaryMarkdown().c_str());
+    std::printf("%s", ParameterGlossary().c_str());
     return kDone;
   }
   const FitSetup setup = FitSetupFromFlags();

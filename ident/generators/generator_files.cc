@@ -124,11 +124,10 @@ TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
 
 }  // namespace
 
-template <class Archive>
-void Fields(Archive& a, ParticleStructure& s) {
+void Fields(JsonArchive& a, ParticleStructure& s) {
   PUSHID_FIELDS(a, s, skip, particles);
   if (a.Has("poses")) a("poses", s.poses);  // this and those below: older files have none
-  s.summed = Archive::kReads ? s.particles : s.summed;
+  s.summed = a.reads() ? s.particles : s.summed;
   if (a.Has("summed")) a("summed", s.summed);
   if (a.Has("lstm")) a("lstm", s.lstm);
   if (a.Has("noisy_input")) a("noisy_input", s.noisy_input);
@@ -139,8 +138,7 @@ void Fields(Archive& a, ParticleStructure& s) {
           "corrected_frames must be 0 to 100000");
 }
 
-template <class Archive>
-void Fields(Archive& a, DiffusionStructure& s) {
+void Fields(JsonArchive& a, DiffusionStructure& s) {
   a("pooling", s.pooling);
   a("pooling_at", s.join);
   a("frame", s.frame);
@@ -231,12 +229,11 @@ std::unique_ptr<MotionGenerator> TrainedDiffusion::Make(const GeneratorSettings&
                                               options, noise);
 }
 
-template <class Archive>
-void Fields(Archive& a, ParticleLayout& layout) {
+void Fields(JsonArchive& a, ParticleLayout& layout) {
   PUSHID_FIELDS(a, layout, joints, up_axis, mirrored_axis);
   a.Rows("particles", std::tie(layout.names, layout.mirrored, layout.parents, layout.weights),
          [&layout](auto& row, size_t i) {
-           if (Archive::kReads && i == 0) layout.fixed.setZero(3, layout.num_particles());
+           if (row.reads() && i == 0) layout.fixed.setZero(3, layout.num_particles());
            row("name", layout.names[i]);
            row("mirrored", layout.mirrored[i]);
            row("parent", layout.parents[i]);
@@ -248,8 +245,7 @@ void Fields(Archive& a, ParticleLayout& layout) {
          });
 }
 
-template <class Archive>
-void Fields(Archive& a, GeneratorSettings& settings) {
+void Fields(JsonArchive& a, GeneratorSettings& settings) {
   PUSHID_FIELDS(a, settings, observed, predicted);
   a("rate_hz", settings.rate);
   a("layout", settings.layout);

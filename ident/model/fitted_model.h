@@ -9,9 +9,7 @@
 
 #include "ident/diagnostics/diagnostics.h"
 #include "ident/model/identified_model.h"
-#include "ident/parameters/fit_options.h"
 #include "ident/parameters/presets.h"
-#include "ident/problem/behaviour.h"
 #include "ident/problem/parallel.h"
 #include "ident/solver/solution.h"
 #include "ident/uncertainty/bootstrap.h"

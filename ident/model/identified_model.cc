@@ -34,19 +34,6 @@ IdentifiedModel ModelOf(const FitResult& result) {
   return model;
 }
 
-namespace {
-
-Error DoesNothing(const std::string& name, const IdentifiedModel& model) {
-  std::vector<std::string> acting;
-  for (const ParameterSpec& spec : model.table.specs) {
-    if (Acts(spec.id, model.options)) acting.push_back(spec.name);
-  }
-  return Error{"--set names " + name + ", which does nothing in this model; what acts is " +
-               ListOfNames(acting)};
-}
-
-}  // namespace
-
 MaybeError SetValues(const std::string& assignments, IdentifiedModel* model) {
   const Result<std::vector<NamedValue>> values = ParseAssignments(assignments, "--set");
   if (!values.ok()) return values.error();
@@ -58,7 +45,14 @@ MaybeError SetValues(const std::string& assignments, IdentifiedModel* model) {
   if (MaybeError error = EditTable(edits, &model->table)) return error;
   for (const NamedValue& named : values.value()) {
     const Parameter id = model->table.Find(named.name)->id;
-    if (!Acts(id, model->options)) return DoesNothing(named.name, *model);
+    if (!Acts(id, model->options)) {
+      std::vector<std::string> acting;
+      for (const ParameterSpec& spec : model->table.specs) {
+        if (Acts(spec.id, model->options)) acting.push_back(spec.name);
+      }
+      return Error{"--set names " + named.name +
+                   ", which does nothing in this model; what acts is " + ListOfNames(acting)};
+    }
     const auto set = [&](ParameterSet<double>* own) {
       (*own)[id] = named.value;
       model->table.SetTied(own);

@@ -1,7 +1,6 @@
-// ident: what a prediction needs of a fit, as data.
+// ident: the part of a fit that predictions need, as data.
 #pragma once
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -12,11 +11,6 @@
 
 #include "ident/parameters/fit_options.h"
 #include "ident/problem/behaviour.h"
-#include "models/enum_names.h"
-#include "models/ipm.h"
-#include "models/learned_terms.h"
-#include "models/parameters.h"
-#include "models/push.h"
 
 namespace pushid {
 
@@ -78,7 +72,7 @@ struct StepProbability {
   double ErrorAt(double margin) const;
 };
 
-// What forecasts a motion that was seen to begin (observed/first_frames.h): both together, or
+// The forecasters of a motion that was seen to begin (observed/first_frames.h): both together, or
 // one alone.
 enum class ForecastUse { kBoth, kPhysics, kInput };
 constexpr EnumNames<ForecastUse, 3> Names(ForecastUse) {
@@ -107,7 +101,7 @@ struct ForecastRule {
   int folds = 0, recordings = 0;
 };
 
-// What a fit and the model that it gives know alike.
+// Facts that a fit shares with the model that it gives.
 struct ModelFacts {
   // As they act, fixed ones too. Indexed by Parameter.
   ParameterSet<double> parameters{};

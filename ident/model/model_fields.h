@@ -3,27 +3,22 @@
 #pragma once
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <tuple>
 #include <vector>
 
-#include "ident/model/fitted_model.h"
 #include "ident/model/model_json.h"
-#include "ident/parameters/fit_options.h"
 #include "ident/parameters/json_archive.h"
 
 namespace pushid {
 
-template <class Archive>
-void Fields(Archive& a, Interval& i) {
+inline void Fields(JsonArchive& a, Interval& i) {
   a("standard_error", i.standard_error);
   a.Pair("interval_95", i.lower, i.upper);
 }
 
 // Models of older versions have Student's quantile everywhere.
-template <class Archive>
-void QuantileField(Archive& a, double* quantile) {
+inline void QuantileField(JsonArchive& a, double* quantile) {
   if (a.Has("quantile")) {
     a("quantile", *quantile);
   } else if (a.Has("freedom")) {
@@ -34,13 +29,11 @@ void QuantileField(Archive& a, double* quantile) {
 }
 
 // The interval that decides; the others beside it are what it is made of.
-template <class Archive>
-void WriteInterval(Archive& a, const Interval& i) {
+inline void WriteInterval(JsonArchive& a, const Interval& i) {
   a.Written("interval", [&i] { return std::vector<double>{i.lower, i.upper}; });
 }
 
-template <class Archive>
-void Fields(Archive& a, Estimate& e) {
+inline void Fields(JsonArchive& a, Estimate& e) {
   // Models written before shares were computed say nothing of them, nor of degrees of freedom.
   const bool shares = a.Has("shares");
   PUSHID_FIELDS(a, e, name, value);
@@ -50,23 +43,16 @@ void Fields(Archive& a, Estimate& e) {
   if (shares) {
     a("freedom", e.freedom);
     QuantileField(a, &e.quantile);
-    a.Group("shares", [&](auto& g) {
-      g("data", e.shares.data);
-      g("prior", e.shares.prior);
-      g("settling", e.shares.settling);
-    });
-    a.Group("pull", [&](auto& g) {
-      g("prior", e.shares.prior_pull);
-      g("settling", e.shares.settling_pull);
-    });
+    a.Group("shares", [&](auto& g) { PUSHID_FIELDS(g, e.shares, data, prior, settling); });
+    a.Group("pull",
+            [&](auto& g) { g("prior", e.shares.prior_pull, "settling", e.shares.settling_pull); });
   }
   a.Optional("total", e.total);
   a.Optional("these_people", e.these);
   PUSHID_FIELDS(a, e, unit, status);
 }
 
-template <class Archive>
-void Fields(Archive& a, Combination& c) {
+inline void Fields(JsonArchive& a, Combination& c) {
   PUSHID_FIELDS(a, c, name, value);
   WriteInterval(a, c.interval());
   a("standard_error", c.standard_error);
@@ -77,8 +63,7 @@ void Fields(Archive& a, Combination& c) {
   a("unit", c.unit);
 }
 
-template <class Archive>
-void Fields(Archive& a, ContrastRow& r) {
+inline void Fields(JsonArchive& a, ContrastRow& r) {
   PUSHID_FIELDS(a, r, name, first, second, difference);
   a.Pair("interval_95", r.lower95, r.upper95);
   PUSHID_FIELDS(a, r, p, p_holm);
@@ -86,41 +71,33 @@ void Fields(Archive& a, ContrastRow& r) {
   PUSHID_FIELDS(a, r, unit, status);
 }
 
-template <class Archive>
-void Fields(Archive& a, Contrast& c) {
+inline void Fields(JsonArchive& a, Contrast& c) {
   PUSHID_FIELDS(a, c, label, first, second);
-  a("people_first", c.only_first);
-  a("people_second", c.only_second);
-  a("people_both", c.both);
+  a("people_first", c.only_first, "people_second", c.only_second, "people_both", c.both);
   a("rows", c.rows);
 }
 
 PUSHID_FIELDS_OF(NullDirection, parameters, coefficients, identified, sentence)
 
-template <class Archive>
-void Fields(Archive& a, SettlingDemand& s) {
+inline void Fields(JsonArchive& a, SettlingDemand& s) {
   PUSHID_FIELDS(a, s, binds, contradicted);
-  if (a.Has("unmet")) a("unmet", s.unmet);
+  a.Newer("unmet", s.unmet);
   PUSHID_FIELDS(a, s, rise, free_seconds);
 }
 
 // All but the estimates, which stand at the top of the file.
-template <class Archive>
-void Fields(Archive& a, Uncertainty& u) {
+inline void Fields(JsonArchive& a, Uncertainty& u) {
   a.Via(
       "clustered_by", [&] { return u.clustered ? NameOf(u.clustered_by) : std::string("none"); },
       [&](const std::string& name) {
         u.clustered = name != "none";
         if (u.clustered) a("clustered_by", u.clustered_by);
       });
-  if (a.Has("two_way")) a("two_way", u.two_way);
+  a.Newer("two_way", u.two_way);
   a("clusters", u.num_clusters);
-  if (a.Has("people")) {
-    a("people", u.num_people);
-    a("about_people_like_them", u.about_people_like_them);
-  }
+  a.Newer("people", u.num_people, "about_people_like_them", u.about_people_like_them);
   a("residuals", u.num_residuals);
-  if (a.Has("full_hessian")) a("full_hessian", u.full_hessian);
+  a.Newer("full_hessian", u.full_hessian);
   PUSHID_FIELDS(a, u, sigma, freedom, too_few_clusters, condition_number);
   a.Written("fitted", [&] {
     std::vector<std::string> names;
@@ -129,8 +106,7 @@ void Fields(Archive& a, Uncertainty& u) {
   });
   a("covariance_fitted_scale", u.covariance);
   PUSHID_FIELDS(a, u, correlation, null_directions);
-  if (a.Has("held_directions")) a("held_directions", u.held_directions);
-  if (a.Has("settling")) a("settling", u.settling);
+  a.Newer("held_directions", u.held_directions, "settling", u.settling);
 }
 
 PUSHID_FIELDS_OF(SubjectParameters, mass_kg, pooled)
@@ -138,8 +114,7 @@ PUSHID_FIELDS_OF(SubjectParameters, mass_kg, pooled)
 // The solve.
 
 // The sentences, and beside them, under KEY_of_recordings, those that are of one recording.
-template <class Archive>
-void WarningFields(Archive& a, const std::string& key, Warnings& warnings) {
+inline void WarningFields(JsonArchive& a, const std::string& key, Warnings& warnings) {
   a.Via(
       key.c_str(),
       [&warnings] {
@@ -161,10 +136,8 @@ void WarningFields(Archive& a, const std::string& key, Warnings& warnings) {
   const std::string of_recordings = key + "_of_recordings";
   if (!a.Has(of_recordings.c_str(), !at.empty())) return;
   a.Rows(of_recordings.c_str(), std::tie(at, recording, of_many), [&](auto& row, size_t i) {
-    row("warning", at[i]);
-    row("recording", recording[i]);
-    row("of_many", of_many[i]);
-    if constexpr (Archive::kReads) {
+    row("warning", at[i], "recording", recording[i], "of_many", of_many[i]);
+    if (row.reads()) {
       row.Check(0 <= at[i] && at[i] < static_cast<int>(warnings.size()),
                 "there is no such warning");
       warnings[at[i]].recording = recording[i];
@@ -175,8 +148,7 @@ void WarningFields(Archive& a, const std::string& key, Warnings& warnings) {
 
 PUSHID_FIELDS_OF(SolveStage, horizon, iterations, initial_cost, final_cost, converged)
 
-template <class Archive>
-void Fields(Archive& a, SolveStart& s) {
+inline void Fields(JsonArchive& a, SolveStart& s) {
   PUSHID_FIELDS(a, s, kind, usable, converged, cost, iterations);
   a.Via(
       "failed_rollouts", [&] { return s.failed.size(); },
@@ -198,75 +170,54 @@ void Fields(Archive& a, SolveStart& s) {
   PUSHID_FIELDS(a, s, stages, message);
 }
 
-template <class Archive>
-void Fields(Archive& a, Work& w) {
-  a("purpose", w.purpose);
-  a("jacobians", w.evaluations.jacobians);
-  a("costs", w.evaluations.costs);
-  a("seconds", w.seconds);
+inline void Fields(JsonArchive& a, Work& w) {
+  a("purpose", w.purpose, "jacobians", w.evaluations.jacobians, "costs", w.evaluations.costs,
+    "seconds", w.seconds);
 }
 
-template <class Archive>
-void Fields(Archive& a, FittedRecording& r) {
+inline void Fields(JsonArchive& a, FittedRecording& r) {
   PUSHID_FIELDS(a, r, id, frames);
-  if (a.Has("people")) a("people", r.people);
+  a.Newer("people", r.people);
   PUSHID_FIELDS(a, r, cost, failure, content_hash);
 }
 
-// What the model does.
+// Behaviour and range of the model.
 
-template <class Archive>
-void Fields(Archive& a, SettlingSimulation& s) {
+inline void Fields(JsonArchive& a, SettlingSimulation& s) {
   PUSHID_FIELDS(a, s, setting, people);
-  a("mass_kg", s.mass);
-  a("impulse_Ns", s.impulse);
-  a("speed_m_s", s.speed);
-  a("lean_rad", s.lean);
-  a("distance_m", s.distance);
-  if (a.Has("advance_m")) a("advance_m", s.advance);
-  if (a.Has("pushed_advance_m")) a("pushed_advance_m", s.pushed_advance);
+  a("mass_kg", s.mass, "impulse_Ns", s.impulse, "speed_m_s", s.speed, "lean_rad", s.lean,
+    "distance_m", s.distance);
+  a.Newer("advance_m", s.advance, "pushed_advance_m", s.pushed_advance);
   PUSHID_FIELDS(a, s, fell, settled);
 }
 
-template <class Archive>
-void Fields(Archive& a, Behaviour& b) {
+inline void Fields(JsonArchive& a, Behaviour& b) {
   PUSHID_FIELDS(a, b, settles, self_propelling);
-  a("fastest_growth_per_s", b.fastest_growth);
-  a("harder_moves_farther", b.harder_moves_farther);
-  a("demonstrations", b.simulations);
+  a("fastest_growth_per_s", b.fastest_growth, "harder_moves_farther", b.harder_moves_farther,
+    "demonstrations", b.simulations);
 }
 
-template <class Archive>
-void Fields(Archive& a, PushedFeet& f) {
+inline void Fields(JsonArchive& a, PushedFeet& f) {
   a("pushed", f.seen);
   PUSHID_FIELDS(a, f, moved, stepped);
 }
 
-template <class Archive>
-void Fields(Archive& a, FittedPerson& p) {
-  a("mass_kg", p.mass);
-  a("rod_m", p.rod);
-  a("cart_height_m", p.cart_height);
-  a("theta_rad", p.theta);
-  a("phi_rad", p.phi);
-  a("feet_apart_m", p.apart);
+inline void Fields(JsonArchive& a, FittedPerson& p) {
+  a("mass_kg", p.mass, "rod_m", p.rod, "cart_height_m", p.cart_height, "theta_rad", p.theta,
+    "phi_rad", p.phi, "feet_apart_m", p.apart);
   a.Check(p.mass > 0.0 && p.rod > 0.0 && std::abs(p.theta) < kMaxAngle &&
               std::abs(p.phi) < kMaxAngle && p.apart.allFinite(),
           "a fitted person has numbers that cannot be");
 }
 
-template <class Archive>
-void Fields(Archive& a, UsualPush& p) {
-  a("kind", p.kind);
-  a("duration_s", p.duration);
-  a("height_of_rod", p.height);
-  if (a.Has("impulse_N_s")) a("impulse_N_s", p.impulse);  // older files have none
+inline void Fields(JsonArchive& a, UsualPush& p) {
+  a("kind", p.kind, "duration_s", p.duration, "height_of_rod", p.height);
+  a.Newer("impulse_N_s", p.impulse);
   a.Check(p.duration > 0.0 && p.impulse > 0.0 && std::isfinite(p.height),
           "a usual push has numbers that cannot be");
 }
 
-template <class Archive>
-void Fields(Archive& a, PushRange& p) {
+inline void Fields(JsonArchive& a, PushRange& p) {
   const auto range = [&a](const char* key, ValueRange& r) {
     if (a.Has(key, !r.empty())) a.Pair(key, r.lower, r.upper);
   };
@@ -276,22 +227,19 @@ void Fields(Archive& a, PushRange& p) {
   range("direction_deg", p.direction);
   range("height_of_rod", p.height);
   range("spacing_m", p.spacing);
-  if (a.Has("people", !p.people.empty())) a("people", p.people);
+  a.Filled("people", p.people);
   a.Optional("usual", p.usual);
 }
 
-template <class Archive>
-void Fields(Archive& a, StepProbability& p) {
-  a("intercept", p.coefficients[0]);
-  a("slope_per_m", p.coefficients[1]);
+inline void Fields(JsonArchive& a, StepProbability& p) {
+  a("intercept", p.coefficients[0], "slope_per_m", p.coefficients[1]);
   PUSHID_FIELDS(a, p, covariance, tracks, stepped);
   a("people", p.clusters);
   a.Check(p.coefficients.allFinite() && p.stepped >= 0 && p.stepped <= p.tracks,
           "step_probability has numbers that cannot be");
 }
 
-template <class Archive>
-void Fields(Archive& a, ErrorScale& e) {
+inline void Fields(JsonArchive& a, ErrorScale& e) {
   PUSHID_FIELDS(a, e, coefficients, quantiles);
   a.Check(e.coefficients.allFinite() &&
               (e.quantiles.empty() || e.quantiles.size() == std::size(kErrorShares)) &&
@@ -300,20 +248,16 @@ void Fields(Archive& a, ErrorScale& e) {
           "an error scale has numbers that cannot be");
 }
 
-template <class Archive>
-void Fields(Archive& a, ForecastRule& f) {
-  a("tail", f.tail);
-  a("input_time_s", f.input_time);
+inline void Fields(JsonArchive& a, ForecastRule& f) {
+  a("tail", f.tail, "input_time_s", f.input_time);
   a.Group("errors", [&f](auto& g) {
-    constexpr const char* kAxes[] = {"along", "across", "upwards"};
-    for (int i = 0; i < 3; ++i) g(kAxes[i], f.errors[i]);
+    g("along", f.errors[0], "across", f.errors[1], "upwards", f.errors[2]);
   });
   PUSHID_FIELDS(a, f, folds, recordings);
   a.Check(f.tail > 0.0 && f.input_time >= 0.0, "forecasts have numbers that cannot be");
 }
 
-template <class Archive>
-void Fields(Archive& a, LikelihoodScore& s) {
+inline void Fields(JsonArchive& a, LikelihoodScore& s) {
   PUSHID_FIELDS(a, s, deviance, measured, parameters);
   a.Written("aic", [&] { return s.Aic(); });
   a.Written("bic", [&] { return s.Bic(); });
@@ -321,27 +265,23 @@ void Fields(Archive& a, LikelihoodScore& s) {
 
 PUSHID_FIELDS_OF(Finding, kind, recording, about, value)
 
-template <class Archive>
-void Fields(Archive& a, StartDiagnostics& s) {
+inline void Fields(JsonArchive& a, StartDiagnostics& s) {
   PUSHID_FIELDS(a, s, condition_number, null_directions, without_effect, notes);
-  if (a.Has("findings")) a("findings", s.findings);  // older files have none
+  a.Newer("findings", s.findings);
 }
 
 PUSHID_FIELDS_OF(Outlier, frame, person, error, weight)
 
-template <class Archive>
-void Fields(Archive& a, RecordingDiagnostics& r) {
-  a("id", r.id);
-  a("explained_percent", r.explained);
-  if (a.Has("moved")) a("moved", r.moved);  // older files have it not
+inline void Fields(JsonArchive& a, RecordingDiagnostics& r) {
+  a("id", r.id, "explained_percent", r.explained);
+  a.Newer("moved", r.moved);
   PUSHID_FIELDS(a, r, cost, lag1, ljung_box, ljung_box_p, outliers);
 }
 
 PUSHID_FIELDS_OF(Whiteness, channel, autocorrelation, error, push, push_error, band, mean_band,
                  ljung_box, ljung_box_p)
 
-template <class Archive>
-void Fields(Archive& a, Leverage& l) {
+inline void Fields(JsonArchive& a, Leverage& l) {
   PUSHID_FIELDS(a, l, recordings, parameters, units, change, in_errors);
   const auto whole = [&l](const std::vector<std::vector<double>>& rows) {
     return rows.size() == l.recordings.size() &&
@@ -358,24 +298,18 @@ PUSHID_FIELDS_OF(AssumptionTest, name, unit, stated, wanted, error, t, p, moves)
 PUSHID_FIELDS_OF(PartTest, parameter, part, t, p)
 PUSHID_FIELDS_OF(MotionTest, quantity, unit, difference, error, t, p)
 
-template <class Archive>
-void Fields(Archive& a, ModelVerdict& v) {
+inline void Fields(JsonArchive& a, ModelVerdict& v) {
   a.Written("fails", [&] { return v.fails(); });
   PUSHID_FIELDS(a, v, not_checked, freedom, p_assumptions, p_parts, p_motion, assumptions, parts);
-  a("motion", v.motion.tests);
-  a("explained", v.motion.explained);
-  a("of_pushes", v.of_pushes);
-  if (a.Has("none_identified", !v.none_identified.empty())) {
-    a("none_identified", v.none_identified);
-  }
+  a("motion", v.motion.tests, "explained", v.motion.explained, "of_pushes", v.of_pushes);
+  a.Filled("none_identified", v.none_identified);
 }
 
 PUSHID_FIELDS_OF(Diagnostics, start, recordings, whiteness, leverage, trace)
 PUSHID_FIELDS_OF(Advice, sentence, command)
 PUSHID_FIELDS_OF(ProfilePoint, value, cost, others)
 
-template <class Archive>
-void Fields(Archive& a, Profile& p) {
+inline void Fields(JsonArchive& a, Profile& p) {
   PUSHID_FIELDS(a, p, name, unit, estimate);
   a("class", p.classification);
   a.OrNull("class_by_data_alone", p.by_data_alone);
@@ -385,18 +319,13 @@ void Fields(Archive& a, Profile& p) {
   a("points", p.points);
 }
 
-template <class Archive>
-void Fields(Archive& a, Bootstrap& b) {
+inline void Fields(JsonArchive& a, Bootstrap& b) {
   PUSHID_FIELDS(a, b, replicas, seed);
-  if (a.Has("drawn_by")) {  // added later; recordings were drawn before
-    PUSHID_FIELDS(a, b, drawn_by, drawn_from, people_shared);
-  }
+  a.Newer("drawn_by", b.drawn_by, "drawn_from", b.drawn_from, "people_shared", b.people_shared);
   a("failed", b.failed);
   a.Rows("parameters", std::tie(b.names, b.units, b.standard_error, b.lower95, b.upper95),
          [&b](auto& row, size_t i) {
-           row("name", b.names[i]);
-           row("unit", b.units[i]);
-           row("standard_error", b.standard_error[i]);
+           row("name", b.names[i], "unit", b.units[i], "standard_error", b.standard_error[i]);
            row.Pair("interval_95", b.lower95[i], b.upper95[i]);
          });
   a("values", b.values);
@@ -405,22 +334,16 @@ void Fields(Archive& a, Bootstrap& b) {
   }
 }
 
-template <class Archive>
-void Fields(Archive& a, HorizonFit& f) {
-  a("frames", f.frames);
-  a("values", f.value);
-  a("standard_errors", f.standard_error);
-  a("failure", f.failure);
+inline void Fields(JsonArchive& a, HorizonFit& f) {
+  a("frames", f.frames, "values", f.value, "standard_errors", f.standard_error, "failure",
+    f.failure);
 }
 
-template <class Archive>
-void Fields(Archive& a, HorizonCheck& c) {
+inline void Fields(JsonArchive& a, HorizonCheck& c) {
   a.Rows("parameters", std::tie(c.parameters, c.units, c.value, c.standard_error),
          [&c](auto& row, size_t i) {
-           row("name", c.parameters[i]);
-           row("unit", c.units[i]);
-           row("value", c.value[i]);
-           row("standard_error", c.standard_error[i]);
+           row("name", c.parameters[i], "unit", c.units[i], "value", c.value[i], "standard_error",
+               c.standard_error[i]);
          });
   a("refits", c.refits);
   for (const HorizonFit& fit : c.refits) {
@@ -439,8 +362,7 @@ inline nlohmann::ordered_json ValuesJson(const ParameterTable& table,
 
 // The file from top to bottom. Entries that are only written are read by ModelReader first: the
 // others are of a model whose options and parameters are known.
-template <class Archive>
-void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
+inline void ModelFields(JsonArchive& a, FittedModel& model, const RunInfo& run) {
   FitResult& fit = model.fit;
   Provenance& from = model.provenance;
   const ModelOptions& options = fit.options.model;
@@ -450,7 +372,7 @@ void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
   PUSHID_FIELDS(a, fit, derived, nuisance, subjects, settings);
   a.Written("values", [&] { return ValuesJson(fit.options.table, fit.parameters); });
   PUSHID_FIELDS(a, fit, behaviour, uncertainty);
-  if (a.Has("verdict")) a("verdict", fit.verdict);
+  a.Newer("verdict", fit.verdict);
   if (a.Has("diagnostics")) {
     a.Group("diagnostics", [&](auto& g) {
       Fields(g, fit.diagnostics);
@@ -466,14 +388,14 @@ void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
     g("recordings", fit.recordings);
   });
   a("configuration", from.configuration);
-  if (a.Has("changed_flags")) a("changed_flags", from.changed_flags);
+  a.Newer("changed_flags", from.changed_flags);
   a.Group("run", [&](auto& g) {
     g.Written("date", [&] { return run.date; });
     g.Written("host", [&] { return run.host; });
     g("manifest", from.manifest);
     g.Written("model_out", [&] { return run.model_path; });
     g("solve_seconds", fit.solve_seconds);
-    if (g.Has("work")) g("work", fit.work);
+    g.Newer("work", fit.work);
     g.Written("total_seconds", [&] { return run.total_seconds; });
     g.Written("num_threads", [&] { return run.num_threads; });
   });
@@ -489,7 +411,7 @@ void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
   if (const auto laws = LawNames(options); a.Has("force_laws", !laws.empty())) {
     a.Written("force_laws", [&] { return laws; });
   }
-  if (a.Has("profiles", !model.profiles.empty())) a("profiles", model.profiles);
+  a.Filled("profiles", model.profiles);
   a.Optional("bootstrap", model.bootstrap);
   a.Optional("horizon_check", model.horizon_check);
 }

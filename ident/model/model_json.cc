@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "datasets/files/json_file.h"
 #include "ident/model/model_fields.h"
@@ -16,7 +15,7 @@ using Json = nlohmann::ordered_json;
 constexpr char kSchema[] = "pushid-model/1";
 constexpr double kRounding = 1e-6;  // of values that are written in other digits
 
-// What the types alone do not ensure and readers of a result rely on.
+// Checks what readers of a result rely on and types alone do not ensure.
 void CheckConsistent(const FitResult& result) {
   if (result.best_start < 0 || result.best_start >= static_cast<int>(result.starts.size())) {
     throw WrongEntry("fit/best_start", "best_start is not one of the starts");
@@ -56,95 +55,72 @@ void CheckConsistent(const FitResult& result) {
   }
 }
 
-// Reads a model part by part, and knows which one it is at.
-class ModelReader {
- public:
-  explicit ModelReader(const Json& json) : json_(json), reader_(json) {}
-
-  // Errors: a law that is not here. Everything else that is wrong is thrown, and part() says where.
-  MaybeError Read(const ForceLaws& laws) {
-    if (MaybeError error = ReadOptions(laws)) return error;
-    ReadLearned();
-    result_.parameters = ValuesFrom(At("values"));
-    ModelFields(reader_, model_, RunInfo{});
-    Uncertainty& u = result_.uncertainty;
-    for (const Estimate& e : result_.estimates) {
-      if (e.status != EstimateStatus::kFixed) u.estimates.push_back(e);
-    }
-    u.estimates.insert(u.estimates.end(), result_.nuisance.begin(), result_.nuisance.end());
-    CheckConsistent(result_);
-    return std::nullopt;
+// A model written before there was such a parameter, which its table does not name then, has its
+// nominal value: nothing it did used it.
+ParameterSet<double> ValuesFrom(const Json& values, const Json& rows, const ParameterTable& table) {
+  ParameterSet<double> set{};
+  for (const ParameterSpec& spec : table.specs) {
+    const bool known = std::any_of(
+        rows.begin(), rows.end(), [&spec](const Json& row) { return row.at("name") == spec.name; });
+    set[spec.id] =
+        known ? ReadAt("values/" + spec.name, [&] { return values.at(spec.name).get<double>(); })
+              : spec.nominal;
   }
+  return set;
+}
 
-  const std::string& part() const { return reader_.part(); }
-  FittedModel& model() { return model_; }
-
- private:
-  const Json& At(const char* key) { return reader_.At(key); }
-
-  MaybeError ReadOptions(const ForceLaws& laws) {
-    ParameterTable known = BaseTable();
-    result_.options = OptionsFrom(At("model"));
-    if (json_.contains("force_laws")) {
-      const auto names = At("force_laws").get<std::vector<std::string>>();
-      if (MaybeError error = AddNamedLaws(names, laws, &result_.options.model, &known)) {
-        return error;
-      }
-    }
-    result_.options.table = TableFrom(At("table"), known);
-    return std::nullopt;
+// Throws where the options name other networks than the one that was read.
+void CheckNamedNetworks(const Json& model, const FitOptions& options) {
+  const LearnedTerms* const learned = options.model.learned.get();
+  const std::string self_force = model.at("self_force"), interaction = model.at("interaction");
+  if (SelfForceText(options.self_force, learned) != self_force) {
+    throw WrongEntry("model/self_force",
+                     "self_force is " + self_force + ", which self_network is not");
   }
-
-  void ReadLearned() {
-    ModelOptions& options = result_.options.model;
-    if (json_.contains("self_network")) {
-      options.learned = LearnedFromJson(At("self_network"));
-      result_.options.hold_network = true;  // what is read is not fitted on
-    }
-    const std::string learned = At("model").at("self_force");
-    if (SelfForceText(result_.options.self_force, options.learned.get()) != learned) {
-      throw WrongEntry("model/self_force",
-                       "self_force is " + learned + ", which self_network is not");
-    }
-    const std::string interaction = At("model").at("interaction");
-    const auto named = ParseInteraction("interaction", interaction);
-    const PairShape pair = options.learned != nullptr ? options.learned->pair : PairShape{};
-    if (!named.ok() || named.value().pair.hidden != pair.hidden ||
-        named.value().pair.ldp != pair.ldp) {
-      throw WrongEntry("model/interaction",
-                       "interaction is " + interaction + ", which self_network is not");
-    }
+  const auto named = ParseInteraction("interaction", interaction);
+  const PairShape pair = learned != nullptr ? learned->pair : PairShape{};
+  if (!named.ok() || named.value().pair.hidden != pair.hidden ||
+      named.value().pair.ldp != pair.ldp) {
+    throw WrongEntry("model/interaction",
+                     "interaction is " + interaction + ", which self_network is not");
   }
+}
 
-  // A model written before there was such a parameter, which its table does not name then, has its
-  // nominal value: nothing it did used it.
-  ParameterSet<double> ValuesFrom(const Json& values) {
-    const Json& rows = json_.at("table");
-    ParameterSet<double> set{};
-    for (const ParameterSpec& spec : result_.options.table.specs) {
-      const bool known = std::any_of(rows.begin(), rows.end(), [&spec](const Json& row) {
-        return row.at("name") == spec.name;
-      });
-      set[spec.id] =
-          known ? ReadAt("values/" + spec.name, [&] { return values.at(spec.name).get<double>(); })
-                : spec.nominal;
-    }
-    return set;
+// Errors: a law that is not among `laws`. Everything else that is wrong is thrown, and the reader's
+// part() says where.
+Result<FittedModel> ReadModel(const Json& json, const ForceLaws& laws, JsonArchive* reader) {
+  FittedModel model;
+  FitResult& fit = model.fit;
+  FitOptions& options = fit.options;
+  options = OptionsFrom(reader->At("model"));
+  ParameterTable known = BaseTable();
+  if (json.contains("force_laws")) {
+    const auto names = reader->At("force_laws").get<std::vector<std::string>>();
+    if (MaybeError error = AddNamedLaws(names, laws, &options.model, &known)) return *error;
   }
-
-  const Json& json_;
-  JsonReader reader_;
-  FittedModel model_;
-  FitResult& result_ = model_.fit;
-};
+  options.table = TableFrom(reader->At("table"), known);
+  if (json.contains("self_network")) {
+    options.model.learned = LearnedFromJson(reader->At("self_network"));
+    options.hold_network = true;  // a model that was read is not fitted on
+  }
+  CheckNamedNetworks(reader->At("model"), options);
+  fit.parameters = ValuesFrom(reader->At("values"), json.at("table"), options.table);
+  ModelFields(*reader, model, RunInfo{});
+  std::vector<Estimate>& fitted = fit.uncertainty.estimates;
+  std::copy_if(fit.estimates.begin(), fit.estimates.end(), std::back_inserter(fitted),
+               [](const Estimate& e) { return e.status != EstimateStatus::kFixed; });
+  fitted.insert(fitted.end(), fit.nuisance.begin(), fit.nuisance.end());
+  CheckConsistent(fit);
+  return model;
+}
 
 }  // namespace
 
 nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
   Json json = {{"schema", kSchema}, {"format", "pushid model"}, {"format_version", kModelFormat}};
   json.get_ref<Json::object_t&>().reserve(64);  // it would copy all of itself where it grows
-  JsonWriter writer(&json);
-  ModelFields(writer, const_cast<FittedModel&>(model), run);
+  JsonArchive archive(&json);
+  ModelFields(archive, const_cast<FittedModel&>(model), run);
   return json;
 }
 
@@ -174,13 +150,13 @@ Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, cons
     return Error{"incomplete or damaged model, at '" + part + "': " + ReasonOf(exception) + remedy,
                  file};
   };
-  ModelReader reader(json);
+  JsonArchive reader(json);
   try {
-    if (MaybeError error = reader.Read(laws)) {
-      error->file = file;
-      return *error;
-    }
-    return std::move(reader.model());
+    Result<FittedModel> model = ReadModel(json, laws, &reader);
+    if (model.ok()) return model;
+    Error error = model.error();
+    error.file = file;
+    return error;
   } catch (const WrongEntry& wrong) {
     return damaged(wrong.path(), wrong);
   } catch (const std::exception& exception) {

@@ -5,13 +5,12 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "ident/model/fitted_model.h"
-#include "ident/parameters/parameter_table.h"
 
 namespace pushid {
 
 inline constexpr int kModelFormat = 1;  // raised when older readers would misread a file
 
-// What changes from run to run and stands under `run`.
+// Facts that change from run to run and stand under `run`.
 struct RunInfo {
   std::string date, host, model_path;
   double total_seconds = 0.0;

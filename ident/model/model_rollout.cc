@@ -7,10 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "datasets/files/number_text.h"
 #include "ident/problem/own_axes.h"
 #include "ident/problem/statistics.h"
-#include "models/learned_terms.h"
 #include "residuals/rollout_residual.h"
 
 namespace pushid {
@@ -172,57 +170,33 @@ void AddPeople(const std::vector<PendulumRecording>& recordings, PushRange* rang
 
 // The pushes, or people, of some recordings that lie outside of a range.
 struct Outside {
+  const char *what, *unit;  // "the push's duration", "s"
   int recordings = 0;
-  double farthest = 1.0;  // as a factor
-  double value = 0.0;     // of the farthest
-  std::string id, last;   // of its recording, and of the last one counted
-  bool has_tail = false;  // in the model, and it is too much
-  ValueRange range;
+  double farthest = 1.0;     // as a factor
+  double value = 0.0;        // of the farthest
+  std::string id{}, last{};  // of its recording, and of the last one counted
+  ValueRange range{};        // that it lies outside of
+  std::string remark{};      // behind the sentence
 
-  void Add(double factor, double of, const std::string& recording, const ValueRange& fitted) {
-    if (factor <= farthest) return;
-    farthest = factor, value = of, id = recording, range = fitted;
-  }
-  // A value that is more than a quarter outside counts.
-  void See(double of, const std::string& recording, const ValueRange& fitted) {
+  // Counts a value that is more than a quarter outside; whether it is.
+  bool See(double of, const std::string& recording, const ValueRange& fitted) {
     const double factor = fitted.Beyond(of);
-    if (factor <= kBeyondFittedRange) return;
-    if (recording != last) ++recordings;
+    if (factor <= kBeyondFittedRange) return false;
+    recordings += recording != last;
     last = recording;
-    Add(factor, of, recording, fitted);
+    if (factor > farthest) farthest = factor, value = of, id = recording, range = fitted;
+    return true;
   }
-  std::string Sentence(const std::string& what, const std::string& unit, int all) const {
+  std::string Sentence(size_t all) const {
     const std::string others = recordings > 1
                                    ? " (the farthest of " + std::to_string(recordings) +
                                          " such among " + std::to_string(all) + " recordings)"
                                    : "";
-    return what + " of " + id + " is " + Rounded(value, 3) + " " + unit + others +
+    return std::string(what) + " of " + id + " is " + Rounded(value, 3) + " " + unit + others +
            "; the model was fitted to " + Rounded(range.lower, 3) + " to " +
-           Rounded(range.upper, 3) + " " + unit + ": an extrapolation";
+           Rounded(range.upper, 3) + " " + unit + ": an extrapolation" + remark;
   }
 };
-
-// What to say of pushes from where none was fitted.
-std::optional<std::string> TurnedAway(const IdentifiedModel& model,
-                                      const std::vector<PendulumRecording>& recordings) {
-  const ValueRange& fitted = model.push_range->direction;
-  if (fitted.empty()) return std::nullopt;
-  for (const PendulumRecording& recording : recordings) {
-    for (const ScenePush& push : recording.scene.pushes) {
-      if (push.force.empty() || !HasDirection(push)) continue;
-      const double angle = Direction(model, recording, push);
-      if (angle <= fitted.upper + kBeyondFittedAngle &&
-          angle >= fitted.lower - kBeyondFittedAngle) {
-        continue;
-      }
-      return "the push of " + recording.id + " points " + Rounded(angle, 3) +
-             " degrees off forwards; the model was fitted to " + Rounded(fitted.lower, 3) + " to " +
-             Rounded(fitted.upper, 3) +
-             " degrees: what people do then is an assumption, not an estimate";
-    }
-  }
-  return std::nullopt;
-}
 
 }  // namespace
 
@@ -255,58 +229,47 @@ PushRange FittedPushRange(const IdentifiedModel& model,
 std::vector<std::string> ExtrapolationWarnings(const IdentifiedModel& model,
                                                const std::vector<PendulumRecording>& recordings) {
   if (!model.push_range) return {};
+  const PushRange& fitted = *model.push_range;
   IdentifiedModel boundless = model;  // tails as they would be without the range
   boundless.push_range.reset();
-  Outside duration, impulse, height, mass, spacing;
+  Outside duration{"the push's duration", "s"}, impulse{"the push's impulse over mass", "m/s"},
+      height{"the push's height over the rod", "of it"}, mass{"the mass of a person", "kg"},
+      spacing{"the distance to the nearest person", "m"};
+  std::string turned;
   ValueRange masses;
-  for (const FittedPerson& person : model.push_range->people) masses.Add(person.mass);
+  for (const FittedPerson& person : fitted.people) masses.Add(person.mass);
   for (const PendulumRecording& recording : recordings) {
-    const auto judge = [&](const auto& value, const auto& range, Outside* outside) {
-      bool any = false;
-      for (const ScenePush& push : recording.scene.pushes) {
-        if (push.force.empty()) continue;
-        const double factor = range(push).Beyond(value(push));
-        if (factor <= kBeyondFittedRange) continue;
-        any = true;
-        outside->Add(factor, value(push), recording.id, range(push));
-        outside->has_tail |= model.options.push_tail != PushTail::kNone &&
-                             push.kind != PushKind::kExternal && value(push) > range(push).upper;
-      }
-      outside->recordings += any;
-    };
-    judge([&](const ScenePush& push) { return Duration(recording, push); },
-          [&](const ScenePush& push) { return model.push_range->Durations(push.kind); }, &duration);
-    judge([&](const ScenePush& push) { return ImpulsePerMass(boundless, recording, push); },
-          [&](const ScenePush&) { return model.push_range->impulse_per_mass; }, &impulse);
+    const std::string& id = recording.id;
     for (const ScenePush& push : recording.scene.pushes) {
-      if (push.force.empty() || !HasHeight(push)) continue;
-      height.See(HeightOfRod(recording, push), recording.id, model.push_range->height);
+      if (push.force.empty()) continue;
+      duration.See(Duration(recording, push), id, fitted.Durations(push.kind));
+      const double speed = ImpulsePerMass(boundless, recording, push);
+      const bool outside = impulse.See(speed, id, fitted.impulse_per_mass);
+      if (outside && speed > fitted.impulse_per_mass.upper && push.kind != PushKind::kExternal &&
+          model.options.push_tail != PushTail::kNone) {
+        impulse.remark = "; its tail is cut to what was seen";
+      }
+      if (HasHeight(push)) height.See(HeightOfRod(recording, push), id, fitted.height);
+      if (!turned.empty() || fitted.direction.empty() || !HasDirection(push)) continue;
+      const double angle = Direction(model, recording, push);
+      const auto& [lower, upper] = fitted.direction;
+      if (angle <= upper + kBeyondFittedAngle && angle >= lower - kBeyondFittedAngle) continue;
+      turned = "the push of " + id + " points " + Rounded(angle, 3) +
+               " degrees off forwards; the model was fitted to " + Rounded(lower, 3) + " to " +
+               Rounded(upper, 3) +
+               " degrees: what people do then is an assumption, not an estimate";
     }
     const Scene& scene = recording.scene;
     for (int n = 0; n < scene.num_people(); ++n) {
-      mass.See(scene.people[n].body.mass, recording.id, masses);
-      if (scene.num_people() > 1) {
-        spacing.See(Spacing(scene, n), recording.id, model.push_range->spacing);
-      }
+      mass.See(scene.people[n].body.mass, id, masses);
+      if (scene.num_people() > 1) spacing.See(Spacing(scene, n), id, fitted.spacing);
     }
   }
-  const int all = static_cast<int>(recordings.size());
   std::vector<std::string> warnings;
-  if (duration.recordings > 0) {
-    warnings.push_back(duration.Sentence("the push's duration", "s", all));
+  for (const Outside* one : {&duration, &impulse, &height, &mass, &spacing}) {
+    if (one->recordings > 0) warnings.push_back(one->Sentence(recordings.size()));
   }
-  if (impulse.recordings > 0) {
-    warnings.push_back(impulse.Sentence("the push's impulse over mass", "m/s", all));
-    if (impulse.has_tail) warnings.back() += "; its tail is cut to what was seen";
-  }
-  if (height.recordings > 0) {
-    warnings.push_back(height.Sentence("the push's height over the rod", "of it", all));
-  }
-  if (mass.recordings > 0) warnings.push_back(mass.Sentence("the mass of a person", "kg", all));
-  if (spacing.recordings > 0) {
-    warnings.push_back(spacing.Sentence("the distance to the nearest person", "m", all));
-  }
-  if (const auto turned = TurnedAway(model, recordings)) warnings.push_back(*turned);
+  if (!turned.empty()) warnings.push_back(turned);
   return warnings;
 }
 

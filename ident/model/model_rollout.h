@@ -1,13 +1,11 @@
-// ident: what all need who roll an identified model out on a recording's scene.
+// ident: rollouts of an identified model on a recording's scene, and how far they extrapolate.
 #pragma once
 
-#include <Eigen/Core>
 #include <string>
 #include <vector>
 
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/model/identified_model.h"
-#include "models/scene.h"
 
 namespace pushid {
 
@@ -29,11 +27,11 @@ std::string OutsideText(const RolloutStatus& status);
 
 // The pushes and people that a model was fitted to, and predictions beyond them.
 //
-// What a push does to a person is its impulse over the person's mass: of its rows and of the tail
+// The effect of a push is its impulse over the person's mass: of its rows and of the tail
 // that the model gives it, so that a measured push and the part of one compare. How long it lasts
 // compares among pushes of one kind only: the rows of a net push cover its beginning.
 
-// What the recorded rows alone give people, m/s; tails not counted.
+// The speed that the recorded rows alone give people, m/s; tails not counted.
 double PushSpeed(const PendulumRecording& recording);
 PushRange FittedPushRange(const IdentifiedModel& model,
                           const std::vector<PendulumRecording>& recordings);
@@ -42,9 +40,9 @@ PushRange FittedPushRange(const IdentifiedModel& model,
 inline constexpr double kBeyondFittedRange = 1.25;
 inline constexpr double kBeyondFittedAngle = 45.0;  // degrees
 
-// What to warn of: one sentence each on the durations, impulses, heights and directions of pushes,
-// and on masses and spacings of people, that lie outside; none on what the model's file, which may
-// be older, does not hold.
+// Warnings, one sentence each on the durations, impulses, heights and directions of pushes,
+// and on masses and spacings of people, that lie outside; none where the model's file, which may
+// be older, has no range.
 std::vector<std::string> ExtrapolationWarnings(const IdentifiedModel& model,
                                                const std::vector<PendulumRecording>& recordings);
 

@@ -1,10 +1,9 @@
-// ident: what is learned by name, by seed and by file.
+// ident: the options of a fit, and learned terms by name, by seed and by file.
 #include "ident/parameters/fit_options.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "datasets/files/random.h"
@@ -14,71 +13,33 @@
 namespace pushid {
 namespace {
 
-// Empty for an unknown name.
-std::vector<bool InteractionTerms::*> TermsOf(const std::string& name) {
-  if (name == "contact") return {&InteractionTerms::spring, &InteractionTerms::damping};
-  for (const InteractionTermName& term : kInteractionTerms) {
-    if (name == term.name) return {term.member};
-  }
-  return {};
-}
-
-std::string TermsText(const InteractionTerms& terms) {
-  std::string text;
-  for (const InteractionTermName& row : kInteractionTerms) {
-    if (terms.*row.member) text += (text.empty() ? "" : ",") + std::string(row.name);
-  }
-  return text.empty() ? "none" : text;
-}
-
-MaybeError ParseTerms(const std::string& flag, const std::string& text, InteractionTerms* terms) {
-  *terms = {};
-  if (text == "none") return std::nullopt;
-  for (const std::string& part : SplitList(text)) {
-    const std::vector<bool InteractionTerms::*> members = TermsOf(part);
-    if (part == "none") return Error{flag + ": none stands alone; leave it or the others out"};
-    if (members.empty()) {
-      std::string known = "contact (spring,damping)";
-      for (const auto& term : kInteractionTerms) known += ", " + std::string(term.name);
-      return Error{flag + " names '" + part + "'; it must be none, or some of " + known};
-    }
-    for (bool InteractionTerms::*member : members) {
-      if (terms->*member) {
-        return Error{flag + " names '" + part + "' twice (contact is spring,damping)"};
-      }
-      terms->*member = true;
-    }
-  }
-  return std::nullopt;
-}
-
 constexpr int kDefaultHidden = 4;
 constexpr double kOpenForgetGate = 1.0;
 // So that none repeats the weights of another.
 constexpr uint64_t kRodSeed = 7919, kPairSeed = 104729;
 
-// Before the sizes; the second is LDP's.
-constexpr std::string_view kNetworkTerm = "network:", kLdpNetworkTerm = "ldp_network:";
 constexpr int kLdpHidden = 256, kLdpEmbedding = 32;
 constexpr char kLdpRod[] = "128-128";
 
 // A size between 1 and kLargestSize, or 0.
 int Size(const std::string& text) {
-  if (text.empty() || text.size() > 4 ||
-      text.find_first_not_of("0123456789") != std::string::npos) {
-    return 0;
-  }
-  const int size = std::stoi(text);
-  return size <= kLargestSize ? size : 0;
+  std::int64_t size = 0;
+  return ParseInteger(text, &size) && size >= 1 && size <= kLargestSize ? static_cast<int>(size)
+                                                                        : 0;
 }
 
 // "128-128"; empty where it is no list of sizes.
 std::vector<int> HiddenSizes(const std::string& text) {
   std::vector<int> hidden;
   for (const std::string& size : SplitList(text, '-')) hidden.push_back(Size(size));
-  const bool sound = !hidden.empty() && hidden.size() <= kMostLayers && text.back() != '-' &&
-                     *std::min_element(hidden.begin(), hidden.end()) > 0;
+  const bool sound = hidden.size() <= kMostLayers && !EndsWith(text, "-") &&
+                     std::count(hidden.begin(), hidden.end(), 0) == 0;
   return sound ? hidden : std::vector<int>();
+}
+
+std::string LayersHelp() {
+  return " (hidden sizes of 1 to " + std::to_string(kLargestSize) + ", at most " +
+         std::to_string(kMostLayers) + " layers)";
 }
 
 Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& text) {
@@ -88,7 +49,7 @@ Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& te
                              : FromName<NetworkKind>(parts[0]).value_or(NetworkKind::kNone);
   shape.hidden = shape.ldp() ? kLdpHidden : kDefaultHidden;
   const bool known = shape.any() && text.back() != ':' && parts.size() <= (shape.ldp() ? 3 : 2);
-  if (shape.ldp()) shape.embedding = kLdpEmbedding;  // which takes the mass
+  if (shape.ldp()) shape.embedding = kLdpEmbedding;  // it takes the mass
   if (parts.size() > 1) shape.hidden = Size(parts[1]);
   if (parts.size() > 2) shape.embedding = Size(parts[2]);
   if (known && shape.hidden > 0 && (parts.size() < 3 || shape.embedding > 0)) return shape;
@@ -114,30 +75,14 @@ void AddHiddenWeights(const std::vector<int>& hidden, int inputs, uint64_t seed,
 
 using Json = nlohmann::ordered_json;
 
-void CheckSizes(const std::string& what, const std::vector<int>& hidden) {
-  for (int size : hidden) {
-    if (size >= 1 && size <= kLargestSize) continue;
-    throw std::runtime_error(what + ": sizes must lie between 1 and " +
-                             std::to_string(kLargestSize));
-  }
+// The value of a text that a result gives; throws where it is none that a flag could give.
+template <typename T>
+T ValueOrThrow(const Result<T>& parsed) {
+  if (!parsed.ok()) throw std::runtime_error(parsed.error().message);
+  return parsed.value();
 }
 
-void CheckRod(const RodShape& rod) {
-  const bool layers_fit =
-      rod.layered() ? !rod.hidden.empty() && rod.hidden.size() <= kMostLayers : rod.hidden.empty();
-  if (!layers_fit) throw std::runtime_error("rod: no " + NameOf(rod.kind) + " has so many layers");
-  CheckSizes("rod", rod.hidden);
-}
-
-void CheckPair(const PairShape& pair) {
-  if (!pair.any() || pair.hidden.size() > kMostLayers) {
-    throw std::runtime_error("interaction: a network has one to " + std::to_string(kMostLayers) +
-                             " hidden layers");
-  }
-  CheckSizes("interaction", pair.hidden);
-}
-
-// What options of networks ask for that there is not; empty: nothing.
+// The network that options ask for and that is not there, as a message; empty: none.
 std::string MissingNetwork(const FitOptions& o) {
   const auto& network = o.model.learned;
   const bool pair = network != nullptr && network->pair.any();
@@ -152,7 +97,7 @@ std::string MissingNetwork(const FitOptions& o) {
   return "";
 }
 
-// What feet that hold cannot do together with the rest; empty: nothing.
+// The option that does not go together with feet that hold, as a message; empty: none.
 std::string StanceViolation(const FitOptions& o) {
   if (o.model.stance == Stance::kSlide) return "";
   const char* sliding = RodMoves(o.model)          ? "--rod"
@@ -198,36 +143,39 @@ Result<RodShape> ParseRod(const std::string& flag, const std::string& text) {
   shape.hidden = HiddenSizes(colon == std::string::npos ? usual : text.substr(colon + 1));
   if (shape.layered() && !shape.hidden.empty()) return shape;
   return Error{flag + " is '" + text +
-               "'; it must be constant, linear, mlp:4 or, as LDP's, ldp:128-128 (hidden sizes "
-               "of 1 to " +
-               std::to_string(kLargestSize) + ", at most " + std::to_string(kMostLayers) +
-               " layers)"};
+               "'; it must be constant, linear, mlp:4 or, as LDP's, ldp:128-128" + LayersHelp()};
 }
 
 Result<InteractionChoice> ParseInteraction(const std::string& flag, const std::string& text) {
   InteractionChoice choice;
-  std::string others;
-  for (const std::string& part : SplitList(text, ',')) {
-    const bool ldp = (part + ":").rfind(kLdpNetworkTerm, 0) == 0;
-    if (!ldp && (part + ":").rfind(kNetworkTerm, 0) != 0) {
-      others += (others.empty() ? "" : ",") + part;
-      continue;
+  const std::vector<std::string> parts = SplitList(text);
+  for (const std::string& part : parts) {
+    bool known = part == "none";
+    if (known && parts.size() > 1) {
+      return Error{flag + ": none stands alone; leave it or the others out"};
     }
-    if (choice.pair.any()) return Error{flag + " names more than one network"};
-    const size_t sizes_at = ldp ? kLdpNetworkTerm.size() : kNetworkTerm.size();
-    choice.pair = {HiddenSizes(part.substr(std::min(sizes_at, part.size()))), ldp};
-    if (choice.pair.any()) continue;
-    return Error{flag + " names '" + part +
-                 "'; a network is network:4 or, as LDP's, ldp_network:512-512 (hidden sizes of 1 "
-                 "to " +
-                 std::to_string(kLargestSize) + ", at most " + std::to_string(kMostLayers) +
-                 " layers)"};
-  }
-  if (others == "none" && choice.pair.any()) {
-    return Error{flag + ": none stands alone; leave it or the others out"};
-  }
-  if (!others.empty() || !choice.pair.any()) {
-    if (MaybeError error = ParseTerms(flag, others, &choice.terms)) return *error;
+    const size_t colon = std::min(part.find(':'), part.size());
+    const std::string name = part.substr(0, colon);
+    const bool ldp = name == "ldp_network";
+    if (ldp || name == "network") {
+      if (choice.pair.any()) return Error{flag + " names more than one network"};
+      choice.pair = {HiddenSizes(part.substr(std::min(colon + 1, part.size()))), ldp};
+      if (choice.pair.any()) continue;
+      return Error{flag + " names '" + part +
+                   "'; a network is network:4 or, as LDP's, ldp_network:512-512" + LayersHelp()};
+    }
+    for (const InteractionTermName& term : kInteractionTerms) {
+      const bool contact = term.name == "spring" || term.name == "damping";
+      if (part != term.name && !(contact && part == "contact")) continue;
+      bool& named = choice.terms.*term.member;
+      if (named) return Error{flag + " names '" + part + "' twice (contact is spring,damping)"};
+      known = named = true;
+    }
+    if (known) continue;
+    std::string terms = "contact (spring,damping)";
+    for (const InteractionTermName& term : kInteractionTerms)
+      terms += ", " + std::string(term.name);
+    return Error{flag + " names '" + part + "'; it must be none, or some of " + terms};
   }
   choice.terms.learned = choice.pair.any();
   choice.terms.learned_in_range = choice.pair.ldp;
@@ -235,20 +183,22 @@ Result<InteractionChoice> ParseInteraction(const std::string& flag, const std::s
 }
 
 std::string InteractionText(const ModelOptions& options) {
-  const std::string others = TermsText(options.interaction);
-  if (!options.interaction.learned || options.learned == nullptr) return others;
-  return (others == "none" ? "" : others + ",") + PairName(options.learned->pair);
+  std::vector<std::string> names;
+  for (const InteractionTermName& term : kInteractionTerms) {
+    if (options.interaction.*term.member) names.emplace_back(term.name);
+  }
+  if (options.interaction.learned && options.learned != nullptr) {
+    names.push_back(PairName(options.learned->pair));
+  }
+  return names.empty() ? "none" : Joined(names, ",");
 }
 
 std::string LearnedName(const LearnedTerms& learned) {
-  std::string name = NetworkName(learned.shape);
-  if (!learned.shape.any()) name.clear();
-  const auto add = [&name](const std::string& more) {
-    name += (name.empty() ? "" : " and ") + more;
-  };
-  if (learned.rod.moves()) add("rod " + RodName(learned.rod));
-  if (learned.pair.any()) add("interaction " + PairName(learned.pair));
-  return name;
+  std::vector<std::string> names;
+  if (learned.shape.any()) names.push_back(NetworkName(learned.shape));
+  if (learned.rod.moves()) names.push_back("rod " + RodName(learned.rod));
+  if (learned.pair.any()) names.push_back("interaction " + PairName(learned.pair));
+  return Joined(names, " and ");
 }
 
 std::vector<double> InitialWeights(const NetworkShape& shape, uint64_t seed) {
@@ -277,16 +227,14 @@ std::shared_ptr<const LearnedTerms> InitialNetwork(const NetworkShape& shape, ui
 
 PUSHID_FIELDS_OF(RodShape, kind, hidden)
 
-template <class Archive>
-void Fields(Archive& a, PairShape& pair) {
+inline void Fields(JsonArchive& a, PairShape& pair) {
   a("hidden", pair.hidden);
-  if (a.Has("ldp")) a("ldp", pair.ldp);
+  a.Newer("ldp", pair.ldp);
 }
 
-template <class Archive>
-void Fields(Archive& a, LearnedTerms& network) {
+inline void Fields(JsonArchive& a, LearnedTerms& network) {
   PUSHID_FIELDS(a, network.shape, kind, hidden, embedding);
-  if (a.Has("rod")) a("rod", network.rod);
+  a.Newer("rod", network.rod);
   a("weights", network.weights);
   if (a.Has("interaction", network.pair.any())) a("interaction", network.pair);
 }
@@ -303,14 +251,18 @@ std::shared_ptr<const LearnedTerms> LearnedFromJson(const Json& json) {
     throw std::runtime_error("network: rod_input, an option of earlier versions, is gone");
   }
   const auto network = std::make_shared<const LearnedTerms>(FromJson<LearnedTerms>(json));
-  const NetworkShape& s = network->shape;
   if (!network->any()) throw std::runtime_error("network: nothing is learned");
-  CheckRod(network->rod);
-  if (json.contains("interaction")) CheckPair(network->pair);
-  if (s.hidden < (s.any() ? 1 : 0) || s.hidden > kLargestSize || s.embedding < s.ldp() ||
-      s.embedding > (s.ldp() ? kLargestSize : 0)) {
-    throw std::runtime_error("network: sizes must lie between 1 and " +
-                             std::to_string(kLargestSize));
+  const NetworkShape& self = network->shape;
+  const NetworkShape named =
+      ValueOrThrow(ParseSelfForce("network", SelfForceText(SelfForceKind::kNone, network.get())))
+          .network;
+  const RodShape rod = ValueOrThrow(ParseRod("rod", RodName(network->rod)));
+  if (json.contains("interaction")) {
+    ValueOrThrow(ParseInteraction("interaction", PairName(network->pair)));
+  }
+  if (named.hidden != self.hidden || named.embedding != self.embedding ||
+      rod.hidden != network->rod.hidden) {
+    throw std::runtime_error("network: it has sizes that its kind has not");
   }
   if (static_cast<int>(network->weights.size()) != network->num_weights()) {
     throw std::runtime_error("network: " + LearnedName(*network) + " has " +
@@ -347,7 +299,7 @@ PUSHID_FIELDS_OF(Prior, mean, sigma)
 
 namespace {
 
-// Options of earlier versions, and their values that did nothing or are those of now. A model that
+// Options of earlier versions, and their values that did nothing or are those of now: a model that
 // has these can still be read.
 constexpr std::pair<const char*, double> kRetiredOptions[] = {{"stability_weight", 0.0},
                                                               {"takeover_weight", 0.0},
@@ -361,8 +313,7 @@ constexpr const char* kRetiredParameters[] = {"drive_gain",  "drive_torque",  "d
                                               "noise_speed", "noise_push"};
 
 // One row of the table, which names other rows.
-template <class Archive>
-void RowFields(Archive& a, ParameterSpec& spec, const ParameterTable& table) {
+void RowFields(JsonArchive& a, ParameterSpec& spec, const ParameterTable& table) {
   const auto find = [&table](const std::string& name, const std::string& otherwise) {
     const ParameterSpec* found = table.Find(name);
     if (found == nullptr) throw std::runtime_error(otherwise);
@@ -404,8 +355,8 @@ void RowFields(Archive& a, ParameterSpec& spec, const ParameterTable& table) {
 Json TableJson(const ParameterTable& table) {
   Json rows = Json::array();
   for (ParameterSpec spec : table.specs) {
-    JsonWriter writer(&rows.emplace_back(Json::object()));
-    RowFields(writer, spec, table);
+    JsonArchive archive(&rows.emplace_back(Json::object()));
+    RowFields(archive, spec, table);
   }
   return rows;
 }
@@ -445,8 +396,8 @@ ParameterTable TableFrom(const Json& json, const ParameterTable& known) {
     spec->pooling_sigma = kFirstPoolingSigma;
     spec->tied_to.reset();
     spec->prior.reset();
-    JsonReader reader(row);
-    RowFields(reader, *spec, table);
+    JsonArchive archive(row);
+    RowFields(archive, *spec, table);
   }
   return table;
 }
@@ -465,6 +416,7 @@ FitOptions OptionsFrom(const Json& json) {
     if (row.may_be_absent && !json.contains(place)) continue;
     row.read(json.at(place), &options);
   }
+  options.model.learned = nullptr;  // its weights are not in the options
   return options;
 }
 

@@ -1,5 +1,5 @@
-// ident: what a fit is asked to do, and of that first what a model learns (a self force, a law of
-// the rod, an interaction), as words of a command line, as first weights, and as JSON.
+// ident: the options of a fit, and before them the terms that a model learns (a self force, a law
+// of the rod, an interaction), as words of a command line, as first weights, and as JSON.
 //
 //   mlp:4                           kind and hidden size (4 where it is left out)
 //   ldp:256:32                      LDP's, with biases, the mass and an embedding
@@ -20,10 +20,8 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/error.h"
 #include "datasets/files/names.h"
 #include "ident/parameters/parameter_table.h"
-#include "models/enum_names.h"
 #include "models/learned_terms.h"
 #include "residuals/frame_residual.h"
 
@@ -103,7 +101,7 @@ struct FitOptions {
   // Weight of the demand that people settle (cost_functions/rest_residual.h), which the data may
   // contradict (fit/fit.h): 0: none.
   double settling_weight = 0.0;
-  // Which parameters may differ by unit: names, comma-separated, "all", "all,-mu" (all but mu)
+  // Parameters that may differ by unit: names, comma-separated, "all", "all,-mu" (all but mu)
   // or "none".
   std::string pool = "none";
   std::string pool_by = kSubjectUnit;  // the unit they may differ by
@@ -120,9 +118,8 @@ struct FitOptions {
   // makes their slopes rows of the table (fit/covariates.h).
   std::string contrast, covariates;
 
-  // What is learned in `model` (whose weights are the start): standard deviation of the
-  // prior that ties its weights to zero; 0: none. Smaller where it does not predict better than
-  // none.
+  // Standard deviation of the prior that ties the weights of learned terms (they start as in
+  // `model`) to zero; 0: none. Smaller where it does not predict better than none.
   double network_prior = 1.0;
   bool hold_network = false;  // its weights are taken as they are
 

@@ -1,17 +1,17 @@
 // ident: one list of fields for the writing and the reading of JSON.
 //
-//   template <class Archive>
-//   void Fields(Archive& a, SolveStage& stage) {
+//   void Fields(JsonArchive& a, SolveStage& stage) {
 //     PUSHID_FIELDS(a, stage, horizon, iterations, cost);  // keys are the members' names
-//     a("initial_cost", stage.first_cost);
-//     if (a.Has("people")) a("people", stage.people);  // older files have none
+//     a("initial_cost", stage.first_cost, "final_cost", stage.last_cost);
+//     a.Newer("people", stage.people);  // older files have none
 //   }
 //   Json json = JsonOf(stage);   SolveStage same = FromJson<SolveStage>(json);
 //
-// Keys are written in the order of the list, and nothing that is written is changed. Numbers,
-// texts, enums with a table of names, vectors, maps by text, matrices by rows, and everything that
-// has a list of fields itself. Readers throw what nlohmann's JSON throws for what is missing or of
-// another type, and std::runtime_error for unknown names and what Check() finds.
+// Keys are written in the order of the list, and nothing that is written is changed. Values are
+// numbers, texts, enums with a table of names, vectors, maps by text, matrices by rows, and all
+// types that have a list of fields themselves. Reading throws nlohmann's exceptions for entries
+// that are missing or of another type, and std::runtime_error for unknown names and where Check()
+// fails.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,15 +39,12 @@
   } while (false)
 #define PUSHID_FIELD(name) fields_of(#name, has_fields.name);
 // The whole list of a type whose keys are its members' names.
-#define PUSHID_FIELDS_OF(Type, ...)       \
-  template <class Archive>                \
-  void Fields(Archive& a, Type& value) {  \
-    PUSHID_FIELDS(a, value, __VA_ARGS__); \
-  }
+#define PUSHID_FIELDS_OF(Type, ...) \
+  inline void Fields(JsonArchive& a, Type& value) { PUSHID_FIELDS(a, value, __VA_ARGS__); }
 
 namespace pushid {
 
-// What is wrong with an entry, whose path it gives.
+// An error in an entry, with the entry's path.
 class WrongEntry : public std::runtime_error {
  public:
   WrongEntry(std::string path, const std::string& what)
@@ -58,14 +55,14 @@ class WrongEntry : public std::runtime_error {
   std::string path_;
 };
 
-// What an exception says for people: without nlohmann's "[json.exception.type_error.302] ".
+// The message of an exception for people: without nlohmann's "[json.exception.type_error.302] ".
 inline std::string ReasonOf(const std::exception& exception) {
   const std::string text = exception.what();
   const size_t end = text.rfind("[json.exception", 0) == 0 ? text.find("] ") : std::string::npos;
   return end == std::string::npos ? text : text.substr(end + 2);
 }
 
-// What `read` gives; what it throws is said of that path.
+// The result of `read`; an exception of it becomes an error at that path.
 template <typename Read>
 auto ReadAt(const std::string& path, Read read) -> decltype(read()) {
   try {
@@ -96,20 +93,11 @@ inline nlohmann::ordered_json NumberOrNull(const std::optional<double>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-// The value of an option by its name in names.h.
-template <typename E>
-E EnumFrom(const nlohmann::ordered_json& json, const char* key) {
-  E value{};
-  if (MaybeError error = ParseName(key, json.at(key).get<std::string>(), &value)) {
-    throw std::runtime_error(error->ToString());
-  }
-  return value;
-}
-
 template <typename T>
 nlohmann::ordered_json JsonOf(const T& value);
+// name: of the entry, for errors.
 template <typename T>
-void ReadJson(const nlohmann::ordered_json& json, T* value);
+void ReadJson(const nlohmann::ordered_json& json, T* value, const char* name = "the entry");
 
 template <typename T>
 T FromJson(const nlohmann::ordered_json& json) {
@@ -118,129 +106,106 @@ T FromJson(const nlohmann::ordered_json& json) {
   return value;
 }
 
-class JsonWriter {
+// Goes through a list of fields and writes them into an object, or reads them from one.
+class JsonArchive {
  public:
-  static constexpr bool kReads = false;
-  explicit JsonWriter(nlohmann::ordered_json* object) : json_(*object) {}
+  using Json = nlohmann::ordered_json;
+  explicit JsonArchive(Json* written) : out_(written), in_(*written) {}
+  explicit JsonArchive(const Json& read) : in_(read) {}
 
+  bool reads() const { return out_ == nullptr; }
   // Whether an entry is to be written; and whether there is one to be read.
-  bool Has(const char*, bool present = true) const { return present; }
+  bool Has(const char* key, bool present = true) const {
+    return reads() ? in_.contains(key) : present;
+  }
+  // An entry to read, and the name of the one that was read last.
+  const Json& At(const char* key) {
+    part_ = key;
+    return in_.at(key);
+  }
+  const std::string& part() const { return part_; }
 
+  // Keys and values in turn.
+  template <typename T, typename... More>
+  void operator()(const char* key, T& value, More&&... more) {
+    if (!reads()) {
+      (*out_)[key] = JsonOf(value);
+    } else if constexpr (!std::is_const_v<T>) {
+      ReadJson(At(key), &value, key);
+    }
+    if constexpr (sizeof...(more) > 0) (*this)(std::forward<More>(more)...);
+  }
+  // As above, of entries that older files do not have.
+  template <typename T, typename... More>
+  void Newer(const char* key, T& value, More&&... more) {
+    if (Has(key)) (*this)(key, value);
+    if constexpr (sizeof...(more) > 0) Newer(std::forward<More>(more)...);
+  }
+  // A container that has no entry while it is empty.
   template <typename T>
-  void operator()(const char* key, const T& value) {
-    json_[key] = JsonOf(value);
+  void Filled(const char* key, T& values) {
+    if (Has(key, !values.empty())) (*this)(key, values);
   }
   // No entry where there is no value.
   template <typename T>
-  void Optional(const char* key, const std::optional<T>& value) {
-    if (value) json_[key] = JsonOf(*value);
+  void Optional(const char* key, std::optional<T>& value) {
+    if (Has(key, value.has_value())) (*this)(key, reads() ? value.emplace() : *value);
   }
+  // Null where there is no value.
   template <typename T>
-  void OrNull(const char* key, const std::optional<T>& value) {
-    json_[key] = value ? JsonOf(*value) : nlohmann::ordered_json(nullptr);
+  void OrNull(const char* key, T&& value) {
+    if (!reads()) {
+      (*out_)[key] = value ? JsonOf(*value) : Json(nullptr);
+    } else if (Has(key) && !in_.at(key).is_null()) {
+      (*this)(key, value.emplace());
+    }
   }
   // [first, second]
   template <typename T>
-  void Pair(const char* key, const T& first, const T& second) {
-    json_[key] = {JsonOf(first), JsonOf(second)};
+  void Pair(const char* key, T& first, T& second) {
+    if (!reads()) {
+      (*out_)[key] = {JsonOf(first), JsonOf(second)};
+      return;
+    }
+    ReadJson(At(key).at(0), &first);
+    ReadJson(At(key).at(1), &second);
   }
   // An object whose fields the function lists.
   template <typename Function>
   void Group(const char* key, Function fields) {
-    nlohmann::ordered_json object = nlohmann::ordered_json::object();
-    JsonWriter inner(&object);
+    JsonArchive inner =
+        reads() ? JsonArchive(At(key)) : JsonArchive(&((*out_)[key] = Json::object()));
     fields(inner);
-    json_[key] = std::move(object);
   }
   // Vectors of one length side by side as rows: fields(archive, i).
-  template <typename Function, typename First, typename... Columns>
-  void Rows(const char* key, std::tuple<First&, Columns&...> columns, Function fields) {
-    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-    for (size_t i = 0; i < std::get<0>(columns).size(); ++i) {
-      nlohmann::ordered_json row = nlohmann::ordered_json::object();
-      JsonWriter inner(&row);
-      fields(inner, i);
-      rows.push_back(std::move(row));
-    }
-    json_[key] = std::move(rows);
-  }
-  // What is stored in another form: get() -> T, set(T).
-  template <typename Get, typename Set>
-  void Via(const char* key, Get get, Set) {
-    json_[key] = JsonOf(get());
-  }
-  // For other readers than ours.
-  template <typename Get>
-  void Written(const char* key, Get get) {
-    json_[key] = JsonOf(get());
-  }
-  void Check(bool, const char*) const {}
-
- private:
-  nlohmann::ordered_json& json_;
-};
-
-class JsonReader {
- public:
-  static constexpr bool kReads = true;
-  explicit JsonReader(const nlohmann::ordered_json& json) : json_(json) {}
-
-  bool Has(const char* key, bool = true) const { return json_.contains(key); }
-  // The entry that was read last.
-  const std::string& part() const { return part_; }
-  const nlohmann::ordered_json& At(const char* key) {
-    part_ = key;
-    return json_.at(key);
-  }
-
-  template <typename T>
-  void operator()(const char* key, T& value) {
-    const nlohmann::ordered_json& json = At(key);
-    if constexpr (std::is_enum_v<T>) {
-      value = EnumFrom<T>(json_, key);
-    } else {
-      ReadJson(json, &value);
-    }
-  }
-  template <typename T>
-  void Optional(const char* key, std::optional<T>& value) {
-    if (Has(key)) (*this)(key, value.emplace());
-  }
-  template <typename T>
-  void OrNull(const char* key, std::optional<T>& value) {
-    if (Has(key) && !json_.at(key).is_null()) Optional(key, value);
-  }
-  template <typename T>
-  void Pair(const char* key, T& first, T& second) {
-    ReadJson(At(key).at(0), &first);
-    ReadJson(At(key).at(1), &second);
-  }
-  template <typename Function>
-  void Group(const char* key, Function fields) {
-    JsonReader inner(At(key));
-    fields(inner);
-  }
   template <typename Function, typename... Columns>
   void Rows(const char* key, std::tuple<Columns&...> columns, Function fields) {
-    const nlohmann::ordered_json& rows = At(key);
+    if (!reads()) (*out_)[key] = Json(std::get<0>(columns).size(), Json::object());
+    const Json& rows = reads() ? At(key) : in_.at(key);
     std::apply([&rows](auto&... column) { (column.resize(rows.size()), ...); }, columns);
     for (size_t i = 0; i < rows.size(); ++i) {
-      JsonReader inner(rows.at(i));
+      JsonArchive inner = reads() ? JsonArchive(rows.at(i)) : JsonArchive(&(*out_)[key].at(i));
       fields(inner, i);
     }
   }
+  // A value that is stored in another form: get() -> T, set(T).
   template <typename Get, typename Set>
   void Via(const char* key, Get get, Set set) {
-    set(FromJson<decltype(get())>(At(key)));
+    if (reads()) set(FromJson<decltype(get())>(At(key)));
+    if (!reads()) (*out_)[key] = JsonOf(get());
   }
+  // An entry for other readers than ours.
   template <typename Get>
-  void Written(const char*, Get) const {}
+  void Written(const char* key, Get get) {
+    if (!reads()) (*out_)[key] = JsonOf(get());
+  }
   void Check(bool ok, const char* otherwise) const {
-    if (!ok) throw std::runtime_error(otherwise);
+    if (reads() && !ok) throw std::runtime_error(otherwise);
   }
 
  private:
-  const nlohmann::ordered_json& json_;
+  Json* out_ = nullptr;
+  const Json& in_;
   std::string part_;
 };
 
@@ -295,16 +260,20 @@ nlohmann::ordered_json JsonOf(const T& value) {
     return rows;
   } else {
     Json object = Json::object();
-    JsonWriter writer(&object);
-    Fields(writer, const_cast<T&>(value));
+    JsonArchive archive(&object);
+    Fields(archive, const_cast<T&>(value));
     return object;
   }
 }
 
 template <typename T>
-void ReadJson(const nlohmann::ordered_json& json, T* value) {
+void ReadJson(const nlohmann::ordered_json& json, T* value, [[maybe_unused]] const char* name) {
   if constexpr (std::is_same_v<T, double>) {
     *value = NumberFrom(json);
+  } else if constexpr (std::is_enum_v<T>) {
+    if (MaybeError error = ParseName(name, json.get<std::string>(), value)) {
+      throw std::runtime_error(error->ToString());
+    }
   } else if constexpr (json_archive::kIsPlain<T>) {
     *value = json.get<T>();
   } else if constexpr (json_archive::kIsVector<T>) {
@@ -328,8 +297,8 @@ void ReadJson(const nlohmann::ordered_json& json, T* value) {
       }
     }
   } else {
-    JsonReader reader(json);
-    Fields(reader, *value);
+    JsonArchive archive(json);
+    Fields(archive, *value);
   }
 }
 

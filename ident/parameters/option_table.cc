@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <limits>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <type_traits>
 
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
+#include "ident/parameters/json_archive.h"
 #include "ident/parameters/presets.h"
 
 namespace pushid {
@@ -76,46 +75,30 @@ Row WordsRow(const char* name, OptionStage stage, const char* help,
 }
 
 // A value in words, as flags give it, and back.
-std::string TextOf(double value) { return DoubleText(value); }
-std::string TextOf(int value) { return std::to_string(value); }
-std::string TextOf(uint64_t value) { return std::to_string(value); }
-std::string TextOf(bool value) { return value ? "true" : "false"; }
-std::string TextOf(const std::string& value) { return value; }
-std::string TextOf(const std::vector<int>& value) { return Json(value).dump(); }
-template <typename E, typename = std::enable_if_t<std::is_enum_v<E>>>
-std::string TextOf(E value) {
-  return NameOf(value);
+template <typename T>
+std::string TextOf(const T& value) {
+  if constexpr (std::is_same_v<T, double>) return DoubleText(value);
+  const Json json = JsonOf(value);
+  return json.is_string() ? json.get<std::string>() : json.dump();
 }
 
-bool ParseText(const std::string& text, double* value) { return ParseDouble(text, value); }
-bool ParseText(const std::string& text, int* value) {
-  std::int64_t whole = 0;
-  if (!ParseInteger(text, &whole) || whole > std::numeric_limits<int>::max() ||
-      whole < std::numeric_limits<int>::min()) {
-    return false;
-  }
-  *value = static_cast<int>(whole);
-  return true;
-}
-bool ParseText(const std::string& text, uint64_t* value) {
-  const char* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, *value);
-  return read.ec == std::errc() && read.ptr == end;
-}
-bool ParseText(const std::string& text, bool* value) {
-  for (const auto& [yes, no] :
-       {std::pair("true", "false"), std::pair("1", "0"), std::pair("yes", "no")}) {
-    if (text != yes && text != no) continue;
-    *value = text == yes;
+template <typename T>
+bool ParseText(const std::string& text, T* value) {
+  if constexpr (std::is_same_v<T, double>) {
+    return ParseDouble(text, value);
+  } else if constexpr (std::is_same_v<T, bool>) {
+    *value = text == "true" || text == "1" || text == "yes";
+    return *value || text == "false" || text == "0" || text == "no";
+  } else if constexpr (std::is_integral_v<T>) {
+    const char* const end = text.data() + text.size();
+    const auto read = std::from_chars(text.data(), end, *value);
+    return read.ec == std::errc() && read.ptr == end;
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    *value = text;
     return true;
   }
-  return false;
+  return false;  // a list stands in files alone
 }
-bool ParseText(const std::string& text, std::string* value) {
-  *value = text;
-  return true;
-}
-bool ParseText(const std::string&, std::vector<int>*) { return false; }  // in files alone
 
 // The row of a field, whose flag and JSON follow from its type. must: what words have to be.
 template <typename T>
@@ -132,17 +115,8 @@ Row FieldRow(const char* name, const char* json, OptionField<T> field, const cha
                      });
   row.json = json;
   row.text = [field](const FitOptions& o) { return TextOf(OptionValue(field, o)); };
-  if constexpr (std::is_enum_v<T>) {
-    row.write = [text = row.text](const FitOptions& o) { return Json(text(o)); };
-    row.read = [=](const Json& value, FitOptions* o) {
-      if (MaybeError error = ParseName(name, value.get<std::string>(), &field(*o))) {
-        throw std::runtime_error(error->ToString());
-      }
-    };
-  } else {
-    row.write = [field](const FitOptions& o) { return Json(OptionValue(field, o)); };
-    row.read = [field](const Json& value, FitOptions* o) { field(*o) = value.get<T>(); };
-  }
+  row.write = [field](const FitOptions& o) { return Json(JsonOf(OptionValue(field, o))); };
+  row.read = [=](const Json& value, FitOptions* o) { ReadJson(value, &field(*o), name); };
   return row;
 }
 
@@ -169,23 +143,16 @@ Row BoolRow(const char* name, const char* json, OptionField<bool> field, const c
   return row;
 }
 
-// By the preset.
-Row Decided(Row row) {
-  row.preset_decides = true;
+// A row with one of its properties set.
+template <auto member, auto value>
+Row With(Row row) {
+  row.*member = value;
   return row;
 }
-
-// In older files.
-Row MayBeAbsent(Row row) {
-  row.may_be_absent = true;
-  return row;
-}
-
-// In files alone: what a preset or the fit itself decides.
-Row Stored(Row row) {
-  row.is_flag = false;
-  return row;
-}
+constexpr auto Decided = With<&Row::preset_decides, true>;     // by the preset
+constexpr auto MayBeAbsent = With<&Row::may_be_absent, true>;  // in older files
+constexpr auto Stored = With<&Row::is_flag, false>;  // in files: a preset or the fit decides it
+constexpr auto AtTable = With<&Row::stage, OptionStage::kTable>;
 
 // An enum that other options depend on, which `set` sets with it; absent in older files.
 template <typename E>
@@ -201,7 +168,7 @@ Row FieldRowWith(void (*set)(E, FitOptions*), const char* name, const char* json
   return MayBeAbsent(row);
 }
 
-// What the model is.
+// Rows of the model.
 
 Row PresetRow() {
   Row row = FieldRow<std::string>(
@@ -209,8 +176,7 @@ Row PresetRow() {
       "the model: auto (tail for recordings of one person, group where there are more), tail (push "
       "tail, posture-relative recovery), group (tail with contact, pooled by setting; with feet "
       "that slide, linear self forces too), robot (feet that hold, PD gains in SI without priors, "
-      "the "
-      "mass as the manifest states it), ldp (plain PD and friction from upright), or "
+      "the mass as the manifest states it), ldp (plain PD and friction from upright), or "
       "ldp_published (LDP with all its networks, of one person or of groups)");
   row.stage = OptionStage::kPreset;
   row.text = [](const FitOptions&) { return std::string(kAutoPreset); };
@@ -218,7 +184,7 @@ Row PresetRow() {
   return row;
 }
 
-// What is learned so far; its weights are drawn once all of it is known (fit_setup.h).
+// The learned terms so far; their weights are drawn once all of them are known (fit_setup.h).
 LearnedTerms Learned(const FitOptions& o) {
   return o.model.learned != nullptr ? *o.model.learned : LearnedTerms{};
 }
@@ -227,105 +193,79 @@ void SetLearned(const LearnedTerms& network, FitOptions* o) {
 }
 
 Row StanceRow() {
-  Row row = FieldRow<Stance>(
-      "stance", "/stance", &ModelOptions::stance,
+  Row row = FieldRowWith<Stance>(
+      SetStance, "stance", "/stance", &ModelOptions::stance,
       "behaviour of the feet: slide (the cart moves under any force), steps (they hold until the "
       "capture point leaves their support, then one of them steps), fixed (they hold), or auto "
       "(fixed where no pushed person's feet moved; steps where some did, and of people who touch "
       "also where all did; slide where three in four people alone did, fewer than half of them "
       "lifted a foot or feet were not recorded; ldp presets: slide)");
   row.text = [](const FitOptions&) { return std::string(kAutoStance); };
-  row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
+  row.apply = [named = row.apply](const std::string& text, FitOptions* o) -> MaybeError {
     if (text == kAutoStance) return std::nullopt;
-    Stance stance;
-    if (MaybeError error = ParseName("--stance", text, &stance)) {
-      return Error{error->message + ", or " + kAutoStance};
-    }
-    SetStance(stance, o);
-    return std::nullopt;
+    MaybeError error = named(text, o);
+    if (error) error->message += std::string(", or ") + kAutoStance;
+    return error;
   };
-  return MayBeAbsent(row);
+  return row;
+}
+
+// A row of words that name what is learned too. `set` takes the name for messages and the words.
+Row LearnedRow(const char* name, const char* json, const char* help,
+               MaybeError (*set)(const std::string&, const std::string&, FitOptions*),
+               std::string (*text)(const FitOptions&)) {
+  Row row = WordsRow(name, OptionStage::kModel, help, [=](const std::string& words, FitOptions* o) {
+    return set("--" + std::string(name), words, o);
+  });
+  row.json = json;
+  row.text = text;
+  row.write = [text](const FitOptions& o) { return Json(text(o)); };
+  row.read = [=](const Json& words, FitOptions* o) {
+    if (MaybeError error = set(name, words.get<std::string>(), o)) {
+      throw std::runtime_error(error->ToString());
+    }
+  };
+  return row;
+}
+
+MaybeError SetSelfForce(const std::string& flag, const std::string& text, FitOptions* o) {
+  const Result<SelfForceChoice> choice = ParseSelfForce(flag, text);
+  if (!choice.ok()) return choice.error();
+  o->self_force = choice.value().kind;
+  LearnedTerms network = Learned(*o);
+  network.shape = choice.value().network;
+  SetLearned(network, o);
+  return std::nullopt;
+}
+
+MaybeError SetRod(const std::string& flag, const std::string& text, FitOptions* o) {
+  const Result<RodShape> rod = ParseRod(flag, text);
+  if (!rod.ok()) return rod.error();
+  LearnedTerms network = Learned(*o);
+  network.rod = rod.value();
+  SetLearned(network, o);
+  return std::nullopt;
+}
+
+MaybeError SetInteraction(const std::string& flag, const std::string& text, FitOptions* o) {
+  const Result<InteractionChoice> choice = ParseInteraction(flag, text);
+  if (!choice.ok()) return choice.error();
+  o->model.interaction = choice.value().terms;
+  LearnedTerms network = Learned(*o);
+  network.pair = choice.value().pair;
+  SetLearned(network, o);
+  return std::nullopt;
 }
 
 std::string SelfForceHelp() {
   std::string text = "additional self force: none, ";
   for (const SelfForceLaw& law : kSelfForces) {
-    if (law.value != SelfForceKind::kNone)
-      text += law.name + (" (" + std::string(law.note)) + "), ";
+    if (law.value == SelfForceKind::kNone) continue;
+    text += law.name + (" (" + std::string(law.note)) + "), ";
   }
   return text +
          "a network by kind and hidden size (mlp:4, or LDP's ldp:256:32 with its embedding), or "
          "linear and a network, comma-separated";
-}
-
-Row SelfForceRow() {
-  const std::string help = SelfForceHelp();
-  Row row = Decided(WordsRow("self_force", OptionStage::kModel, help.c_str(),
-                             [](const std::string& text, FitOptions* o) -> MaybeError {
-                               const Result<SelfForceChoice> choice =
-                                   ParseSelfForce("--self_force", text);
-                               if (!choice.ok()) return choice.error();
-                               o->self_force = choice.value().kind;
-                               LearnedTerms network = Learned(*o);
-                               network.shape = choice.value().network;
-                               SetLearned(network, o);
-                               return std::nullopt;
-                             }));
-  row.json = "/self_force";
-  row.write = [](const FitOptions& o) {
-    return Json(SelfForceText(o.self_force, o.model.learned.get()));
-  };
-  row.read = [](const Json& json, FitOptions* o) {
-    const auto self = ParseSelfForce("self_force", json.get<std::string>());
-    if (!self.ok()) throw std::runtime_error(self.error().ToString());
-    o->self_force = self.value().kind;
-  };
-  return row;
-}
-
-Row RodRow() {
-  Row row = WordsRow("rod", OptionStage::kModel,
-                     "the rod's length: constant, or a state that a learned law changes, together "
-                     "with the cart's height: linear, mlp:4 (hidden sizes); or LDP's, whose cart "
-                     "keeps its height, ldp:128-128",
-                     [](const std::string& text, FitOptions* o) -> MaybeError {
-                       const Result<RodShape> rod = ParseRod("--rod", text);
-                       if (!rod.ok()) return rod.error();
-                       LearnedTerms network = Learned(*o);
-                       network.rod = rod.value();
-                       SetLearned(network, o);
-                       return std::nullopt;
-                     });
-  row.text = [](const FitOptions& o) { return RodName(Learned(o).rod); };
-  return row;
-}
-
-Row InteractionRow() {
-  const char* const help =
-      "interaction between people: none, or some of these, comma-separated: contact (smooth and "
-      "mutual: spring,damping), ldp_published (LDP's equations 10 and 11 and its table of signs), "
-      "network:4 (learned beside contact, by hidden sizes), ldp_network:512-512 (LDP's, learned of "
-      "every neighbour in range)";
-  Row row = Decided(WordsRow("interaction", OptionStage::kModel, help,
-                             [](const std::string& text, FitOptions* o) -> MaybeError {
-                               const Result<InteractionChoice> choice =
-                                   ParseInteraction("--interaction", text);
-                               if (!choice.ok()) return choice.error();
-                               o->model.interaction = choice.value().terms;
-                               LearnedTerms learned = Learned(*o);
-                               learned.pair = choice.value().pair;
-                               SetLearned(learned, o);
-                               return std::nullopt;
-                             }));
-  row.json = "/interaction";
-  row.text = [](const FitOptions& o) { return InteractionText(o.model); };
-  row.write = [](const FitOptions& o) { return Json(InteractionText(o.model)); };
-  row.read = [](const Json& json, FitOptions* o) {
-    const auto choice = ParseInteraction("interaction", json.get<std::string>());
-    if (!choice.ok()) throw std::runtime_error(choice.error().ToString());
-    o->model.interaction = choice.value().terms;
-  };
-  return row;
 }
 
 std::vector<Row> ModelRows() {
@@ -333,8 +273,14 @@ std::vector<Row> ModelRows() {
   return {
       PresetRow(),
       StanceRow(),
-      SelfForceRow(),
-      RodRow(),
+      Decided(LearnedRow(
+          "self_force", "/self_force", SelfForceHelp().c_str(), SetSelfForce,
+          [](const FitOptions& o) { return SelfForceText(o.self_force, o.model.learned.get()); })),
+      LearnedRow("rod", "",
+                 "the rod's length: constant, or a state that a learned law changes, together "
+                 "with the cart's height: linear, mlp:4 (hidden sizes); or LDP's, whose cart "
+                 "keeps its height, ldp:128-128",
+                 SetRod, [](const FitOptions& o) { return RodName(Learned(o).rod); }),
       Decided(FieldRow<Posture>("posture", "/posture", &ModelOptions::posture,
                                 "balance error measured from: upright or initial")),
       MayBeAbsent(Decided(FieldRow<Directions>(
@@ -362,15 +308,20 @@ std::vector<Row> ModelRows() {
           "com_height, gyration_radius and push_gain, of robots and rigs: fixed or fitted)"),
       Stored(FieldRow<CartDerivative>("cart_derivative", "/cart_derivative",
                                       &ModelOptions::cart_derivative, "")),
-      InteractionRow(),
+      Decided(LearnedRow(
+          "interaction", "/interaction",
+          "interaction between people: none, or some of these, comma-separated: contact (smooth "
+          "and mutual: spring,damping), ldp_published (LDP's equations 10 and 11 and its table of "
+          "signs), network:4 (learned beside contact, by hidden sizes), ldp_network:512-512 "
+          "(LDP's, learned of every neighbour in range)",
+          SetInteraction, [](const FitOptions& o) { return InteractionText(o.model); })),
       Stored(MayBeAbsent(FieldRow<ProcessNoise>("process_noise", "/process_noise",
                                                 &ModelOptions::process_noise, ""))),
       FieldRowWith<Likelihood>(
           SetLikelihood, "likelihood", "/likelihood", &O::likelihood,
           "what a fit maximizes: trajectory (whole rollouts), or, under process noise, transition "
           "(each measured state given the one before) or innovation (each measurement given all "
-          "before it, with errors "
-          "of measurement)"),
+          "before it, with errors of measurement)"),
       FieldRow<DerivativesBy>(
           "derivatives", "", &O::derivatives,
           "of rollouts: auto (the quickest there are), or autodiff (of the model's own formulas)"),
@@ -378,22 +329,10 @@ std::vector<Row> ModelRows() {
   };
 }
 
-// How the recordings, the priors and the demands on the person weigh.
+// Rows of the weights of recordings, priors and the demands on the person.
 
-Row LossRow() {
-  Row row = FieldRow<FrameLoss>(
-      "loss", "/sigmas/loss", &ResidualSigmas::loss,
-      "what is minimized: hip (positions of the hip, velocities, angles and rates, robust by "
-      "frame), or ldp (LDP's Eq. 6: absolute errors of all states and velocities, but for the rate "
-      "of phi, which is itself held small)");
-  row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
-    FrameLoss loss;
-    if (MaybeError error = ParseName("--loss", text, &loss)) return error;
-    if (loss == o->sigmas.loss) return std::nullopt;
-    o->sigmas = loss == FrameLoss::kLdp ? kLdpSigmas : ResidualSigmas();
-    return std::nullopt;
-  };
-  return MayBeAbsent(row);
+void SetLoss(FrameLoss loss, FitOptions* o) {
+  if (loss != o->sigmas.loss) o->sigmas = loss == FrameLoss::kLdp ? kLdpSigmas : ResidualSigmas();
 }
 
 Row PoolByRow() {
@@ -426,21 +365,20 @@ Row PoolingSigmaRow() {
   return Stored(row);
 }
 
-Row Rare(Row row) {
-  row.heading = kRarelyChanged;
-  return row;
-}
-
 std::vector<Row> WeightRows() {
   using O = FitOptions;
   return {
-      LossRow(),
+      FieldRowWith<FrameLoss>(
+          SetLoss, "loss", "/sigmas/loss", &ResidualSigmas::loss,
+          "what is minimized: hip (positions of the hip, velocities, angles and rates, robust by "
+          "frame), or ldp (LDP's Eq. 6: absolute errors of all states and velocities, but for the "
+          "rate of phi, which is itself held small)"),
       Stored(NumberRow("sigma_hip", "/sigmas/hip_m", &ResidualSigmas::hip, kPositive, "")),
       Stored(NumberRow("sigma_velocity", "/sigmas/velocity_m_s", &ResidualSigmas::velocity,
                        kPositive, "")),
       Stored(NumberRow("sigma_angle", "/sigmas/angle_rad", &ResidualSigmas::angle, kPositive, "")),
       Stored(NumberRow("sigma_rate", "/sigmas/rate_rad_s", &ResidualSigmas::rate, kPositive, "")),
-      Rare(MayBeAbsent(NumberRow(
+      With<&Row::heading, kRarelyChanged>(MayBeAbsent(NumberRow(
           "marker_noise", "/sigmas/marker_noise_m", &O::marker_noise, kPositive,
           "standard deviation of a marker's position, m: lower limit of estimated sigmas"))),
       Stored(NumberRow("robust", "/sigmas/robust", &ResidualSigmas::robust, kNotNegative, "")),
@@ -454,10 +392,13 @@ std::vector<Row> WeightRows() {
                     "simulations); 0: off")),
       Decided(PoolByRow()),
       PoolingSigmaRow(),
+      MayBeAbsent(NumberRow(
+          "network_prior", "/network_prior", &O::network_prior, kNotNegative,
+          "standard deviation of the prior that ties a network's weights to zero; 0: none")),
   };
 }
 
-// Where the solve starts and ends.
+// Rows of the solver.
 
 Row HorizonsRow() {
   Row row = FieldRow<std::vector<int>>("horizons", "/horizons", &FitOptions::horizons, "");
@@ -487,11 +428,6 @@ std::vector<Row> SolverRows() {
 }
 
 // Edits of the table of parameters.
-
-Row AtTable(Row row) {
-  row.stage = OptionStage::kTable;
-  return row;
-}
 
 Row CovariateRow() {
   Row row = FieldRow<std::string>(
@@ -551,10 +487,6 @@ const std::vector<FitOptionRow>& AllOptionRows() {
     };
     add("model", ModelRows());
     add("fit", WeightRows());
-    add("fit",
-        {MayBeAbsent(NumberRow(
-            "network_prior", "/network_prior", &FitOptions::network_prior, kNotNegative,
-            "standard deviation of the prior that ties a network's weights to zero; 0: none"))});
     add(kRarelyChanged, SolverRows());
     add("model", TableRows());
     return all;
@@ -564,10 +496,9 @@ const std::vector<FitOptionRow>& AllOptionRows() {
 
 const std::vector<FitOptionRow>& FitOptionRows() {
   static const std::vector<FitOptionRow> flags = [] {
-    std::vector<FitOptionRow> rows = AllOptionRows();
-    rows.erase(
-        std::remove_if(rows.begin(), rows.end(), [](const Row& row) { return !row.is_flag; }),
-        rows.end());
+    std::vector<FitOptionRow> rows;
+    std::copy_if(AllOptionRows().begin(), AllOptionRows().end(), std::back_inserter(rows),
+                 [](const Row& row) { return row.is_flag; });
     return rows;
   }();
   return flags;

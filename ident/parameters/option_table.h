@@ -6,11 +6,9 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-#include "datasets/files/error.h"
 #include "ident/parameters/fit_options.h"
 
 namespace pushid {
@@ -38,7 +36,7 @@ struct FitOptionRow {
   std::function<std::string(const FitOptions&)> text;
   // Errors name the flag and the value. Null for kPreset.
   std::function<MaybeError(const std::string&, FitOptions*)> apply;
-  // What the value violates, as in "must be positive"; empty: nothing. Null: any value will do.
+  // The rule that the value violates, "must be positive"; empty: none. Null: any value will do.
   std::function<std::string(const FitOptions&)> violation;
 
   std::string json;            // where it stands in a model's "model"; empty: nowhere

@@ -98,28 +98,18 @@ bool AnyPooled(const ParameterTable& table) {
                      [](const ParameterSpec& spec) { return spec.free && spec.pooled; });
 }
 
-TextTable ParameterGlossary() {
-  TextTable table(
-      {"name", "symbol", "unit", ">without preset", "bounds", "meaning", "when to free it"});
+std::string ParameterGlossary() {
+  std::string text =
+      "| name | symbol | unit | without preset | bounds | meaning | when to free it |\n"
+      "|---|---|---|--:|---|---|---|\n";
   for (const ParameterFacts& facts : AllParameterFacts()) {
-    table.Add({std::string(facts.name), std::string(facts.symbol), std::string(facts.unit),
-               Rounded(facts.nominal), Rounded(facts.lower) + " to " + Rounded(facts.upper),
-               std::string(facts.meaning), std::string(facts.when_to_free)});
-  }
-  return table;
-}
-
-std::string ParameterGlossaryMarkdown() {
-  const TextTable table = ParameterGlossary();
-  std::string text;
-  for (size_t i = 0; i < table.rows().size(); ++i) {
-    for (const std::string& cell : table.rows()[i]) text += "| " + cell + " ";
-    text += "|\n";
-    if (i > 0) continue;
-    for (size_t column = 0; column < table.rows()[0].size(); ++column) {
-      text += table.IsWords(column) ? "|---" : "|--:";
-    }
-    text += "|\n";
+    const std::string bounds = Rounded(facts.lower) + " to " + Rounded(facts.upper);
+    text += "| " +
+            Joined({std::string(facts.name), std::string(facts.symbol), std::string(facts.unit),
+                    Rounded(facts.nominal), bounds, std::string(facts.meaning),
+                    std::string(facts.when_to_free)},
+                   " | ") +
+            " |\n";
   }
   return text;
 }
@@ -127,11 +117,8 @@ std::string ParameterGlossaryMarkdown() {
 namespace {
 
 std::vector<std::string> NonEmptyParts(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::stringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);) {
-    if (!part.empty()) parts.push_back(part);
-  }
+  std::vector<std::string> parts = SplitList(text, separator);
+  parts.erase(std::remove(parts.begin(), parts.end(), ""), parts.end());
   return parts;
 }
 
@@ -143,34 +130,19 @@ Error UnknownName(const std::string& name, const std::string& flag, const Parame
                (meant.empty() ? "; there are " + Listed(names, ",") : meant)};
 }
 
-// "name" or "name=value": has_value says which.
-struct Item {
-  std::string name;
-  bool has_value = false;
-  double value = 0.0;
-};
-Result<Item> ParseItem(const std::string& text, const std::string& flag) {
-  const size_t equals = text.find('=');
-  Item item{text.substr(0, equals)};
-  if (equals == std::string::npos) return item;
-  item.has_value = true;
-  if (!ParseDouble(text.substr(equals + 1), &item.value)) {
-    return Error{flag + ": '" + text + "' has no number after '='"};
-  }
-  return item;
-}
-
-// Comma-separated; a name stands once, as nobody knows which of two values is meant.
-Result<std::vector<Item>> ParseItems(const std::string& list, const std::string& flag) {
-  std::vector<Item> items;
+// Items "name" and "name=value", comma-separated; of the first the value is NaN. A name stands
+// once, as nobody knows which of two values is meant.
+Result<std::vector<NamedValue>> ParseItems(const std::string& list, const std::string& flag) {
+  std::vector<NamedValue> items;
   std::set<std::string> names;
   for (const std::string& text : NonEmptyParts(list, ',')) {
-    const Result<Item> item = ParseItem(text, flag);
-    if (!item.ok()) return item.error();
-    if (!names.insert(item.value().name).second) {
-      return Error{flag + " names " + item.value().name + " twice"};
+    const size_t equals = text.find('=');
+    NamedValue item{text.substr(0, equals), NAN};
+    if (equals != std::string::npos && !ParseDouble(text.substr(equals + 1), &item.value)) {
+      return Error{flag + ": '" + text + "' has no number after '='"};
     }
-    items.push_back(item.value());
+    if (!names.insert(item.name).second) return Error{flag + " names " + item.name + " twice"};
+    items.push_back(item);
   }
   return items;
 }
@@ -185,15 +157,16 @@ MaybeError CheckInBounds(const ParameterSpec& spec, double value, const std::str
 
 MaybeError Assign(const std::string& list, const std::string& flag, std::optional<bool> make_free,
                   bool value_needed, ParameterTable* table) {
-  const Result<std::vector<Item>> items = ParseItems(list, flag);
+  const Result<std::vector<NamedValue>> items = ParseItems(list, flag);
   if (!items.ok()) return items.error();
-  for (const Item& item : items.value()) {
+  for (const NamedValue& item : items.value()) {
+    const bool has_value = !std::isnan(item.value);
     ParameterSpec* spec = table->Find(item.name);
     if (spec == nullptr) return UnknownName(item.name, flag, *table);
-    if (value_needed && !item.has_value) {
+    if (value_needed && !has_value) {
       return Error{flag + ": '" + item.name + "' needs a value, as in " + item.name + "=1"};
     }
-    if (item.has_value) {
+    if (has_value) {
       // A fixed parameter may sit on zero, where a log scale has no place for a free one; not
       // those that divide: the tail's time, and those of feet that stand.
       const bool free_after = make_free.value_or(spec->free);
@@ -266,14 +239,12 @@ Result<std::vector<CovariatesOfParameter>> ParseCovariates(const std::string& te
 }
 
 Result<std::vector<NamedValue>> ParseAssignments(const std::string& text, const std::string& flag) {
-  std::vector<NamedValue> values;
-  const Result<std::vector<Item>> items = ParseItems(text, flag);
-  if (!items.ok()) return items.error();
-  for (const Item& item : items.value()) {
-    if (!item.has_value) return Error{flag + ": '" + item.name + "' is not name=value"};
-    values.push_back({item.name, item.value});
+  Result<std::vector<NamedValue>> items = ParseItems(text, flag);
+  if (!items.ok()) return items;
+  for (const NamedValue& item : items.value()) {
+    if (std::isnan(item.value)) return Error{flag + ": '" + item.name + "' is not name=value"};
   }
-  return values;
+  return items;
 }
 
 MaybeError CheckTouching(const std::string& assignments, const std::string& flag,

@@ -10,10 +10,7 @@
 
 #include "datasets/files/error.h"
 #include "ident/figures/text_table.h"
-#include "models/enum_names.h"
 #include "models/force_law.h"
-#include "models/options.h"
-#include "models/parameters.h"
 #include "residuals/parameter_map.h"
 
 namespace pushid {
@@ -51,7 +48,7 @@ struct ParameterSpec {
   std::string meaning;  // one line for people
 };
 
-// Which law of self forces is fitted beyond balance, friction and the preset's own
+// The law of self forces that is fitted beyond balance, friction and the preset's own
 // (PUSHID_SELF_FORCES).
 #define PUSHID_LAW(id, ...) id,
 enum class SelfForceKind { kNone, PUSHID_SELF_FORCES(PUSHID_LAW) };
@@ -131,14 +128,10 @@ struct CovariatesOfParameter {
 // either side, the same covariate of a parameter twice.
 Result<std::vector<CovariatesOfParameter>> ParseCovariates(const std::string& text);
 
-// Every parameter in words, from its row (models/model_rows.h).
-
-// Name, symbol (in the equation that heads the file of its term), unit, value where no preset sets
-// one, bounds, meaning, and when to free it; a row each.
-TextTable ParameterGlossary();
-
-// The glossary as a table in Markdown.
-std::string ParameterGlossaryMarkdown();
+// Every parameter in words, from its row (models/model_rows.h), as a table in Markdown: name,
+// symbol (in the equation that heads the file of its term), unit, value where no preset sets one,
+// bounds, meaning, and when to free it.
+std::string ParameterGlossary();
 
 // A user's own force laws in a fit.
 

@@ -6,40 +6,36 @@
 #include <iterator>
 #include <set>
 
-#include "datasets/manifest/recording.h"
-#include "models/learned_terms.h"
-#include "models/parameters.h"
 #include "models/self_terms.h"
 
 namespace pushid {
 namespace {
 
 // A start, and the sigma of a weak prior about it.
-struct WeakStart {
+struct Start {
   Parameter id;
   double value, sigma;
 };
 
-void FreeFrom(const WeakStart& start, ParameterTable* table) {
-  ParameterSpec& spec = (*table)[start.id];
-  spec.free = true;
-  spec.nominal = start.value;
-  spec.prior = Prior{start.value, start.sigma};
+void FreeFrom(std::initializer_list<Start> starts, ParameterTable* table) {
+  for (const auto& [id, value, sigma] : starts) {
+    ParameterSpec& spec = (*table)[id];
+    spec.free = true;
+    spec.nominal = value;
+    spec.prior = Prior{value, sigma};
+  }
 }
 
 FitOptions TailPreset() {
   FitOptions o;
-  o.preset = "tail";
   o.table = BaseTable();
   // Round numbers, not fitted ones. Each is the centre of a weak prior as wide as itself: stiffness
   // and cross term slide along a ridge that fits no better and predicts unseen pushes worse (hipADE
   // 0.112 against 0.096 m in cross-validation); the prior's exact centre hardly matters.
-  for (const WeakStart& start :
-       {WeakStart{kMu, 40, 40}, WeakStart{kKpTheta, 1400, 1400}, WeakStart{kKdTheta, 140, 140},
-        WeakStart{kAx, -10, 10}, WeakStart{kTailGain, 1, 1}, WeakStart{kTailTorque, 0.5, 0.5},
-        WeakStart{kTailTime, 0.2, 0.2}, WeakStart{kTailBase, 0.0, 0.5}}) {
-    FreeFrom(start, &o.table);
-  }
+  FreeFrom({Start{kMu, 40, 40}, Start{kKpTheta, 1400, 1400}, Start{kKdTheta, 140, 140},
+            Start{kAx, -10, 10}, Start{kTailGain, 1, 1}, Start{kTailTorque, 0.5, 0.5},
+            Start{kTailTime, 0.2, 0.2}, Start{kTailBase, 0.0, 0.5}},
+           &o.table);
   // The tail's time does not grow with the push's duration (tail_exponent): in the published
   // recordings that stands for the condition, and it sends people away who are pushed weakly for
   // long.
@@ -56,7 +52,6 @@ FitOptions TailPreset() {
 
 FitOptions GroupPreset() {
   FitOptions o = TailPreset();
-  o.preset = "group";
   o.model.interaction.spring = o.model.interaction.damping = true;
   o.self_force = SelfForceKind::kLinear;
   o.table[kKdTheta] = BaseTable()[kKdTheta];
@@ -70,10 +65,7 @@ FitOptions GroupPreset() {
   // Held at 0, unseen recordings are predicted worse (hipADE 0.103 against 0.098 m in 5 folds): in
   // groups the duration stands for no condition. Longer pushes than there were are bounded
   // (models/push.h).
-  ParameterSpec& exponent = o.table[kTailExponent];
-  exponent.free = true;
-  exponent.nominal = 1.5;
-  exponent.prior = Prior{1.5, 1.5};
+  FreeFrom({Start{kTailExponent, 1.5, 1.5}}, &o.table);
   // Going on to 1e-7 takes half as long again and moves no parameter by more than a tenth of its
   // standard error.
   o.function_tolerance = 1e-5;
@@ -87,16 +79,13 @@ void SetFixed(FitOptions* options) {
   options->model.push_tail = PushTail::kNone;
   options->model.directions = Directions::kBody;
   options->settling_weight = 0.0;
-  for (const WeakStart& start : {WeakStart{kKpTheta, 1250, 1250}, WeakStart{kKpPhi, 1250, 1250},
-                                 WeakStart{kKdTheta, 300, 300}, WeakStart{kKdPhi, 300, 300},
-                                 WeakStart{kComHeight, 1.09, 0.055}}) {
-    FreeFrom(start, &options->table);
-  }
+  FreeFrom({Start{kKpTheta, 1250, 1250}, Start{kKpPhi, 1250, 1250}, Start{kKdTheta, 300, 300},
+            Start{kKdPhi, 300, 300}, Start{kComHeight, 1.09, 0.055}},
+           &options->table);
 }
 
 FitOptions RobotPreset() {
   FitOptions o;
-  o.preset = "robot";
   o.table = BaseTable();
   SetFixed(&o);
   o.model.stance = Stance::kFixed;
@@ -116,7 +105,6 @@ constexpr double kCartGainPerFrame = 4.0, kAngleGainPerFrame = 200.0;  // Kd
 // --fix=Kd_theta=200,Kd_phi=200.
 FitOptions LdpPreset() {
   FitOptions o;
-  o.preset = "ldp";
   o.table = BaseTable();
   o.table[kKpX].nominal = o.table[kKpY].nominal = 30;
   o.table[kKdTheta].nominal = o.table[kKdPhi].nominal = kAngleGainPerFrame / kLdpRate;
@@ -134,7 +122,6 @@ FitOptions LdpPreset() {
 // as one.
 FitOptions LdpPublishedPreset() {
   FitOptions o = LdpPreset();
-  o.preset = kLdpPublished;
   for (Parameter id : {kKpTheta, kKpPhi, kKdTheta, kKdPhi}) o.table[id].free = false;
   o.table[kKdX].nominal = o.table[kKdY].nominal = kCartGainPerFrame / kLdpRate;
   o.model.cart_derivative = CartDerivative::kBackward;
@@ -150,7 +137,6 @@ FitOptions LdpPublishedPreset() {
 
 FitOptions LdpPublishedGroupsPreset() {
   FitOptions o = LdpPublishedPreset();
-  o.preset = kLdpPublishedGroups;
   o.model.interaction.ldp_published = true;
   o.model.interaction.learned = o.model.interaction.learned_in_range = true;
   const LearnedTerms& alone = *o.model.learned;
@@ -292,14 +278,12 @@ void SetStance(Stance stance, FitOptions* options) {
   // Few of those who were recorded stand, and none of them for long: that they can, and half of
   // them step at 0.34 m/s, comes from these priors. Twice as wide they predict people left out
   // alike (hipADE 0.0843 m against 0.0848), who step earlier.
-  for (const WeakStart& start :
-       {WeakStart{kKpTheta, 900, 50}, WeakStart{kKpPhi, 950, 100}, WeakStart{kKdTheta, 200, 20},
-        WeakStart{kKdPhi, 320, 60}, WeakStart{kSupportFront, 0.12, 0.015},
-        WeakStart{kFootFront, 0.2, 0.01}, WeakStart{kStepGain, 0.85, 0.05},
-        WeakStart{kStepOnset, 0.5, 0.08}, WeakStart{kStepSwing, 0.31, 0.03},
-        WeakStart{kTailGain, 0.3, 0.15}, WeakStart{kTailTime, 0.35, 0.1}}) {
-    FreeFrom(start, &table);
-  }
+  FreeFrom(
+      {Start{kKpTheta, 900, 50}, Start{kKpPhi, 950, 100}, Start{kKdTheta, 200, 20},
+       Start{kKdPhi, 320, 60}, Start{kSupportFront, 0.12, 0.015}, Start{kFootFront, 0.2, 0.01},
+       Start{kStepGain, 0.85, 0.05}, Start{kStepOnset, 0.5, 0.08}, Start{kStepSwing, 0.31, 0.03},
+       Start{kTailGain, 0.3, 0.15}, Start{kTailTime, 0.35, 0.1}},
+      &table);
 }
 
 std::string MemoryOf(const ModelOptions& model) {
@@ -335,7 +319,11 @@ Result<FitOptions> StartPreset(const std::string& name) {
   if (name == kAutoPreset) {
     return Error{"the preset auto looks at recordings: ask PresetFor what it stands for"};
   }
-  if (const NamedPreset* preset = FindPreset(name)) return preset->make();
+  if (const NamedPreset* preset = FindPreset(name)) {
+    FitOptions options = preset->make();
+    options.preset = name;
+    return options;
+  }
   std::string known = kAutoPreset;
   for (const NamedPreset& preset : kPresets) {
     known += (&preset == std::end(kPresets) - 1 ? " or " : ", ") + std::string(preset.name);
@@ -392,11 +380,9 @@ void SetDelay(Delay delay, FitOptions* options) {
   options->model.delay = delay;
   if (delay == Delay::kNone) return;
   // Weak priors: published delays are 0.10 to 0.16 s (median 0.134), passive shares 0 to 0.9.
-  for (const WeakStart& start :
-       {WeakStart{kReactionDelay, 0.13, 0.1}, WeakStart{kStepDelay, 0.2, 0.15},
-        WeakStart{kPassiveStiffness, 0.2, 0.2}, WeakStart{kPassiveDamping, 0.2, 0.2}}) {
-    FreeFrom(start, &options->table);
-  }
+  FreeFrom({Start{kReactionDelay, 0.13, 0.1}, Start{kStepDelay, 0.2, 0.15},
+            Start{kPassiveStiffness, 0.2, 0.2}, Start{kPassiveDamping, 0.2, 0.2}},
+           &options->table);
 }
 
 PushedFeet FeetOf(const std::vector<PendulumRecording>& recordings) {

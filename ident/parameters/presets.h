@@ -1,19 +1,13 @@
-// ident: settings of the models, and what follows from a model: which parameters are fitted.
+// ident: the presets of a fit (--preset says what each is for), and the parameters that a model
+// frees.
 //
-//   tail:  one person: push tail, posture-relative recovery, one cross term; eight free
-//          parameters, the tail's base partially pooled by condition
-//   robot: a machine whose feet hold: PD gains in N m/rad and N m s/rad, the same in all
-//   directions,
-//          without priors; its mass as the manifest states it (com_over_rod, gyration_over_rod)
-//   ldp:   one person: plain PD balance and one friction from upright; five free parameters
-//   group: people who touch: tail with contact. Where feet step contact and tail are partially
-//          pooled by setting (condition), sixteen shared parameters; where they slide there are all
-//          linear self forces, and every parameter but mu is, eighteen shared ones
-//   ldp_published: LDP as published (Yue et al., CVPR 2024), networks and all: PD and friction at
-//          all times, an LSTM as self force, a law of the rod; between people
-//          (ldp_published_groups, which it stands for where there are several) also potential,
-//          torques and a network on every neighbour
-//   auto:  tail where every recording is of one person, otherwise group
+//   tail          eight free parameters, the tail's base partially pooled by condition
+//   group         where feet step, contact and tail are partially pooled by setting, sixteen shared
+//                 parameters; where they slide, all but mu, eighteen shared ones
+//   robot         PD gains in N m/rad and N m s/rad, the same in all directions, without priors
+//   ldp           five free parameters
+//   ldp_published its networks and mu; of groups (ldp_published_groups) also potential, torques and
+//                 a network on every neighbour (Yue et al., CVPR 2024)
 //
 //   FitOptions options = MakePreset("tail").value();
 //   options.model.friction = FrictionKind::kAnisotropic;
@@ -25,16 +19,14 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/parameters/fit_options.h"
-#include "models/options.h"
 
 namespace pushid {
 
 inline constexpr char kAutoPreset[] = "auto";
 
-// What "auto" and "ldp_published" stand for on these recordings; other names as they are.
+// The preset that "auto" and "ldp_published" stand for on these recordings; other names stay.
 std::string PresetFor(const std::string& name, const std::vector<PendulumRecording>& recordings);
 
 // Whether gains are those of the one body that was recorded, whatever its mass and height.
@@ -57,14 +49,13 @@ void FreeTerms(FitOptions* options);
 // people.
 MaybeError PoolParameters(FitOptions* options);
 
-// What the feet do, with what goes with it: where they hold and step, pushes act as their kind says
-// (a `net` push holds the feet's reaction), and the balance gains are the ankles'. Where they hold
-// whatever happens, pushes have no tail, people are not held to settle, and both gains of both
-// directions are free.
-// Unless told which, a preset takes the stance from what the feet did (PushedFeet), and has one
-// for people who nearly all move: of people alone feet slide, of people who touch they step, each
-// the one that predicts them better (models/README.md). Presets that stand for something published
-// have none (nullopt) and slide.
+// Sets the behaviour of the feet and all that follows from it: where they hold and step, pushes act
+// as their kind says (a `net` push holds the feet's reaction), and the balance gains are the
+// ankles'. Where they hold whatever happens, pushes have no tail, people are not held to settle,
+// and both gains of both directions are free. Unless told which, a preset takes the stance from
+// what the feet did (PushedFeet), and has one for people who nearly all move: of people alone feet
+// slide, of people who touch they step, each the one that predicts them better (models/README.md).
+// Presets that stand for something published have none (nullopt) and slide.
 inline constexpr char kAutoStance[] = "auto";
 std::optional<Stance> StanceOfMovers(const std::string& preset);
 void SetStance(Stance stance, FitOptions* options);
@@ -74,11 +65,11 @@ inline bool NeedsJoints(const ModelOptions& model) {
   return model.body == BodyModel::kAnthropometric;
 }
 
-// What the fit maximizes. A likelihood of single steps has process noise,
-// and demands nothing of people in simulations: these see rollouts, which it does not fit.
+// Sets the likelihood that the fit maximizes. One of single steps has process noise, and demands
+// nothing of people in simulations: these see rollouts, which it does not fit.
 void SetLikelihood(Likelihood likelihood, FitOptions* options);
 
-// What of a model has a state besides place and velocity, as its flag is called; empty: nothing.
+// The part of a model that has a state besides place and velocity, as a flag; empty: none.
 // Likelihoods of single steps are for models without.
 std::string MemoryOf(const ModelOptions& model);
 
@@ -90,11 +81,10 @@ void SetDelay(Delay delay, FitOptions* options);
 
 inline constexpr double kLdpRate = 60.0;  // Hz: LDP counts Kd per frame
 
-// What the feet of pushed people did, and which stance a fit takes from that.
+// The feet of pushed people in recordings, and the stance that a fit takes from them.
 //
 //   PushedFeet feet = FeetOf(recordings);
 //   StanceOf(feet, Stance::kSlide)  // kFixed: nobody's feet moved
-//   FeetText(feet, stance)    // "feet hold (--stance=fixed; they moved in 0 of 24 pushes)"
 
 // Pushed people whose feet were recorded; who is pushed in two recordings counts twice.
 struct PushedFeet {
@@ -112,10 +102,10 @@ PushedFeet FeetOf(const std::vector<PendulumRecording>& recordings);
 // slide. Three in four moved: of_movers. Else: steps.
 Stance StanceOf(const PushedFeet& feet, Stance of_movers);
 
-// What the feet of a model do and what those of the recordings did; empty: none were recorded.
+// "feet hold (--stance=fixed; they moved in 0 of 24 pushes)"; empty: no feet were recorded.
 std::string FeetText(const PushedFeet& feet, Stance stance);
 
-// What to warn of where the two contradict each other; empty: nothing.
+// A warning where the stance contradicts the recorded feet; empty: none.
 std::string FeetWarning(const PushedFeet& feet, Stance stance);
 
 }  // namespace pushid

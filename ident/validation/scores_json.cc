@@ -27,9 +27,9 @@ Metrics MeanWithStatic(const ScoreSummary& summary) {
   return sum / std::max<double>(1.0, static_cast<double>(summary.recordings.size()));
 }
 
-void Fields(JsonWriter& a, StepFifth& f) { PUSHID_FIELDS(a, f, tracks, predicted, observed); }
+void Fields(JsonArchive& a, StepFifth& f) { PUSHID_FIELDS(a, f, tracks, predicted, observed); }
 
-void Fields(JsonWriter& a, StepScore& s) {
+void Fields(JsonArchive& a, StepScore& s) {
   PUSHID_FIELDS(a, s, tracks, stepped, people, brier, brier_error, auc, auc_error, fifths);
   if (s.lift_off.people == 0) return;
   a.Group("lift_off", [&](auto& g) {
@@ -41,7 +41,7 @@ void Fields(JsonWriter& a, StepScore& s) {
   });
 }
 
-void Fields(JsonWriter& a, StepPrediction& s) {
+void Fields(JsonArchive& a, StepPrediction& s) {
   a("margin_m", s.margin);
   PUSHID_FIELDS(a, s, probability, stepped);
   if (!s.timing) return;
@@ -53,13 +53,13 @@ void Fields(JsonWriter& a, StepPrediction& s) {
   a.OrNull("travel_m", travel);
 }
 
-void Fields(JsonWriter& a, PropagationMean& m) {
+void Fields(JsonArchive& a, PropagationMean& m) {
   a("value", m.value);
   a("standard_error", m.error);
   a("of", m.weight);
 }
 
-void Fields(JsonWriter& a, PropagationSummary& s) {
+void Fields(JsonArchive& a, PropagationSummary& s) {
   a("recordings", s.recordings);
   a("onset_distance_m", kOnsetDistance);
   PUSHID_FIELDS(a, s, movers, bystanders, missed_movers, false_movers);
@@ -72,7 +72,7 @@ void Fields(JsonWriter& a, PropagationSummary& s) {
   a.OrNull("speed_predicted_m_per_s", Speed(s.figures[kSlownessPredicted]));
 }
 
-void Fields(JsonWriter& a, PersonPropagation& p) {
+void Fields(JsonArchive& a, PersonPropagation& p) {
   a("rank", p.rank);
   a("distance_m", p.distance);
   a("onset_measured_frame", p.onset_measured);
