@@ -12,52 +12,41 @@ namespace {
 
 using namespace pushid;
 
-// A program, pushid-NAME; `pushid NAME` runs it.
+// A program, pushid-NAME, which `pushid NAME` runs.
 struct Command {
+  const char* job;  // that it is for
   const char* name;
-  const char* line;  // what it does
+  const char* line;  // its purpose
 };
-
-struct Job {
-  const char* title;
-  std::vector<Command> commands;
+constexpr Command kCommands[] = {
+    {"recordings", "inspect", "what is in a file: joints, rate, unit, axes, onset, problems"},
+    {"recordings", "manifest", "write down which files belong together"},
+    {"recordings", "push", "compute a push from a force sensor, or by inverse dynamics"},
+    {"recordings", "simulate", "make recordings of synthetic people, alone or in groups"},
+    {"identification", "fit", "identify the parameters of a model from recordings"},
+    {"identification", "check",
+     "question a fitted model: profiles, bootstrap, other pushes and priors"},
+    {"identification", "report", "a model in words and tables, or as a page"},
+    {"identification", "evaluate", "errors of a model on recordings"},
+    {"identification", "crossvalidate",
+     "errors of models on recordings that they were not fitted to"},
+    {"identification", "batch", "many fits from a plan"},
+    {"prediction", "predict", "the motion after a push"},
+    {"prediction", "animate", "a page of moving bodies, forces told in words"},
+    {"prediction", "formation", "how far a push travels through people who stand together"},
+    {"prediction", "path", "the most probable motion between two ends, or through a recording"},
+    {"learned parts", "train-restoration", "learn whole bodies from pendulums"},
+    {"learned parts", "train-generator", "learn to generate motion"},
+    {"learned parts", "generate", "motion from a generator, and its scores"},
 };
-
-// Every program, by the job that it is for.
-const std::vector<Job>& Jobs() {
-  static const std::vector<Job> jobs = {
-      {"recordings",
-       {{"inspect", "what is in a file: joints, rate, unit, axes, onset, problems"},
-        {"manifest", "write down which files belong together"},
-        {"push", "compute a push from a force sensor, or by inverse dynamics"},
-        {"simulate", "make recordings of synthetic people, alone or in groups"}}},
-      {"identification",
-       {{"fit", "identify the parameters of a model from recordings"},
-        {"check", "question a fitted model: profiles, bootstrap, other pushes and priors"},
-        {"report", "a model in words and tables, or as a page"},
-        {"evaluate", "errors of a model on recordings"},
-        {"crossvalidate", "errors of models on recordings that they were not fitted to"},
-        {"batch", "many fits from a plan"}}},
-      {"prediction",
-       {{"predict", "the motion after a push"},
-        {"animate", "a page of moving bodies, forces told in words"},
-        {"formation", "how far a push travels through people who stand together"},
-        {"path", "the most probable motion between two ends, or through a recording"}}},
-      {"learned parts",
-       {{"train-restoration", "learn whole bodies from pendulums"},
-        {"train-generator", "learn to generate motion"},
-        {"generate", "motion from a generator, and its scores"}}},
-  };
-  return jobs;
-}
 
 int Help() {
   std::printf("pushid COMMAND [flags] runs the program pushid-COMMAND.\n");
-  for (const Job& job : Jobs()) {
-    std::printf("\n%s:\n", job.title);
-    for (const Command& command : job.commands) {
-      std::printf("  %-18s %s\n", command.name, command.line);
-    }
+  std::string job;
+  for (const Command& command : kCommands) {
+    if (job != command.job) std::printf("\n%s:\n", command.job);
+    job = command.job;
+    std::printf("  %-18s %s\n", command.name, command.line);
   }
   std::printf(
       "\npushid help COMMAND shows an example of one, which works where apps/quickstart.sh wrote "
@@ -70,11 +59,9 @@ int Help() {
 int Run(const std::string& word, const std::vector<std::string>& arguments) {
   const std::string command = word.rfind("pushid-", 0) == 0 ? word.substr(7) : word;
   std::vector<std::string> known = {"help"};
-  for (const Job& job : Jobs()) {
-    for (const Command& one : job.commands) {
-      if (one.name == command) return Fail(RunInstead("pushid-" + command, arguments));
-      known.push_back(one.name);
-    }
+  for (const Command& one : kCommands) {
+    if (one.name == command) return Fail(RunInstead("pushid-" + command, arguments));
+    known.push_back(one.name);
   }
   std::string meant = ClosestName(command, known);
   for (const std::string& one : known) {  // "fitt" and "sim"

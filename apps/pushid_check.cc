@@ -1,19 +1,12 @@
 // apps: pushid-check: questions put to a finished model, with the recordings that it was fitted to.
-#include <gflags/gflags.h>
-
-#include <algorithm>
-#include <cstdio>
 #include <cstring>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
-#include "datasets/files/atomic_file.h"
-#include "datasets/files/names.h"
 #include "ident/checks/model_checks.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/option_table.h"
 #include "ident/parameters/presets.h"
-#include "ident/problem/parallel.h"
 #include "ident/report/advice.h"
 #include "ident/report/page/build_report.h"
 #include "ident/report/report_text.h"
@@ -48,41 +41,20 @@ namespace {
 
 using namespace pushid;
 
-uint64_t SeedOf(const FitOptions& options) {
-  if (FLAGS_seed.empty()) return options.seed;
-  FitOptions given;
-  OrFail(FindFitOption("seed")->apply(FLAGS_seed, &given));
-  return given.seed;
-}
-
-ModelChecks ChecksFromCommandLine(uint64_t seed) {
+// fit: the options of the model, whose seed holds unless another is given.
+ModelChecks ChecksFromCommandLine(FitOptions fit) {
+  if (!FLAGS_seed.empty()) OrFail(FindFitOption("seed")->apply(FLAGS_seed, &fit));
   ModelChecks checks;
   checks.profile = FLAGS_profile;
   checks.bootstrap.replicas = FLAGS_bootstrap;
   checks.horizon_check = FLAGS_horizon_check;
   checks.learn_forecasts = FLAGS_learn_forecasts;
   checks.design = FLAGS_design;
-  checks.bootstrap.seed = seed;
+  checks.bootstrap.seed = fit.seed;
   checks.bootstrap.num_threads = checks.num_threads = FLAGS_num_threads;
   OrFail(CheckNumbers(checks));
   OrFail(ParseName("--bootstrap_by", FLAGS_bootstrap_by, &checks.bootstrap.by));
   return checks;
-}
-
-void Add(const std::vector<PendulumRecording>& recordings, const ModelChecks& checks,
-         FittedModel* model) {
-  ProgressLine line;
-  const auto progress = [&line](const std::string& what) { return line.OfJobs(what); };
-  OrFail(AddChecks(recordings, checks, progress, model));
-}
-
-// The recordings of the model, loaded as the fit loaded them.
-std::vector<PendulumRecording> LoadFitted(FittedModel* model) {
-  const std::map<std::string, std::string>& fit_flags = model->provenance.configuration;
-  FitOptions& options = model->fit.options;
-  LoadAs(fit_flags);
-  const auto loaded = LoadFittedRecordings(model->fit, NeedsJoints(options.model));
-  return OrFail(AsFitted(MakePendulumRecordings(loaded), model->fit));
 }
 
 // Adds these flags to the record of how the model was made.
@@ -106,7 +78,7 @@ int Run() {
   CheckRange("num_threads", FLAGS_num_threads, 1, 1024);
   CheckRecordingFlags();
   FittedModel model = OrFail(ReadFittedModel(FLAGS_model));
-  const ModelChecks checks = ChecksFromCommandLine(SeedOf(model.fit.options));
+  const ModelChecks checks = ChecksFromCommandLine(model.fit.options);
   if (!checks.Any()) {
     return Fail(
         "nothing is asked; give one of --profile, --bootstrap=199, --horizon_check, "
@@ -115,12 +87,19 @@ int Run() {
   const std::string& out = FLAGS_model_out.empty() ? FLAGS_model : FLAGS_model_out;
   const bool writes = checks.Adds() || !FLAGS_model_out.empty();
   if (writes) OrFail(CheckWritable(out));
-  const std::vector<PendulumRecording> recordings = LoadFitted(&model);
+  LoadAs(model.provenance.configuration);
+  const std::vector<Recording> loaded =
+      LoadFittedRecordings(model.fit, NeedsJoints(model.fit.options.model));
+  const std::vector<PendulumRecording> recordings =
+      OrFail(AsFitted(MakePendulumRecordings(loaded), model.fit));
   OrFail(CheckAgainst(checks, model.fit.options, recordings));
   OrFail(ResumeFit(recordings, &model.fit));
   AddToProvenance(&model.provenance);
   model.provenance.model_file = out;
-  Add(recordings, checks, &model);
+  ProgressLine line;
+  OrFail(AddChecks(
+      recordings, checks, [&line](const std::string& what) { return line.OfJobs(what); }, &model));
+  line.Finish();
   const Screen found = OrFail(CheckScreen(recordings, checks, model));
   if (FLAGS_details) std::printf("%s", DetailsText(model).c_str());
   std::printf("%s", found.ToString().c_str());

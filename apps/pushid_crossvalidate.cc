@@ -1,27 +1,12 @@
 // apps: pushid-crossvalidate: how well configurations predict recordings they have not seen.
-#include <gflags/gflags.h>
-
-#include <cstdio>
-#include <nlohmann/json.hpp>
 #include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/fit_option_flags.h"
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/support/app_support.h"
-#include "datasets/files/error.h"
-#include "datasets/files/json_file.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "ident/bodies/body_recording.h"
-#include "ident/fit/fit_setup.h"
-#include "ident/prediction/evaluation.h"
-#include "ident/prediction/futures.h"
 #include "ident/problem/folds.h"
 #include "ident/validation/crossvalidation.h"
 #include "ident/validation/scores_json.h"
@@ -55,30 +40,24 @@ using namespace pushid;
 using Setups = std::vector<std::pair<std::string, FitSetup>>;
 using Candidates = std::vector<std::pair<std::string, FitOptions>>;
 
-// A candidate of --compare, with the options that it has over the given ones.
-std::pair<std::string, GivenOptions> CandidateFrom(const std::string& text) {
-  const size_t colon = text.find(':');
-  const std::string name(Trimmed(text.substr(0, colon)));
-  if (colon == std::string::npos || name.empty()) {
-    throw Error{"--compare: '" + text + "' is not 'name: --flag=value ...'"};
-  }
-  const Result<GivenOptions> options = ParseOptionWords(text.substr(colon + 1));
-  if (!options.ok()) throw Error{"--compare, '" + name + "': " + options.error().message};
-  return std::make_pair(name, options.value());
-}
-
 // The flags' own model, whose name is its preset's, and those of --compare.
 Setups SetupsFromFlags() {
   const FitSetup own = FitSetupFromFlags();
   Setups setups = {{"", own}};
   for (const std::string& item : SplitList(FLAGS_compare, ';')) {
-    const std::string trimmed(Trimmed(item));
-    if (trimmed.empty()) continue;
-    const auto candidate = CandidateFrom(trimmed);
-    const auto& [name, more] = candidate;
-    const Result<FitSetup> setup = FitSetup::Make(Merged(GivenFitFlags(), more), more);
-    if (!setup.ok()) throw Error{"--compare, '" + name + "': " + setup.error().message};
-    setups.emplace_back(name, setup.value());
+    const std::string text(Trimmed(item));
+    if (text.empty()) continue;
+    const size_t colon = text.find(':');
+    const std::string name(Trimmed(text.substr(0, colon)));
+    if (colon == std::string::npos || name.empty()) {
+      throw Error{"--compare: '" + text + "' is not 'name: --flag=value ...'"};
+    }
+    const auto of_candidate = [&name](auto result) {
+      if (!result.ok()) throw Error{"--compare, '" + name + "': " + result.error().message};
+      return result.value();
+    };
+    const GivenOptions more = of_candidate(ParseOptionWords(text.substr(colon + 1)));
+    setups.emplace_back(name, of_candidate(FitSetup::Make(Merged(GivenFitFlags(), more), more)));
   }
   return setups;
 }
@@ -97,12 +76,6 @@ Candidates CandidatesOf(const Setups& setups,
     candidates.emplace_back(name.empty() ? options.value().preset : name, options.value());
   }
   return candidates;
-}
-
-void ReadScheme(FoldScheme* scheme) {
-  CheckExcludes({"scheme", "folds", "repeats"}, "folds_file",
-                "--folds_file already gives the folds; leave --{} out");
-  OrFail(ParseName("--scheme", FLAGS_scheme, scheme));
 }
 
 using Predictors = std::vector<Predictor>;
@@ -134,16 +107,6 @@ void AddBaselines(const FitOptions& options, Predictors* predictors) {
   }
 }
 
-// Two candidates of one name could not be distinguished in the tables.
-void CheckNames(const Predictors& predictors) {
-  std::set<std::string> names;
-  for (const Predictor& predictor : predictors) {
-    if (names.insert(predictor.name).second) continue;
-    throw Error{"--compare has more than one '" + predictor.name +
-                "'; give each configuration its own name"};
-  }
-}
-
 Predictors MakePredictors(const Candidates& candidates) {
   Predictors predictors;
   const int observed = ObservedFrames();
@@ -163,13 +126,6 @@ Predictors MakePredictors(const Candidates& candidates) {
   return predictors;
 }
 
-// Throws where flags are wrong, before any recording is read.
-void CheckFlags(const Setups& setups) {
-  MakePredictors(CandidatesOf(setups));
-  CheckObservedFlag();
-  OrFail(CheckOutputFiles({FLAGS_json_out}));
-}
-
 nlohmann::ordered_json ScoresJson(const std::vector<CrossValidation>& validations) {
   nlohmann::ordered_json json = ResultHead(kScoresSchema);
   for (const CrossValidation& validation : validations) {
@@ -183,9 +139,13 @@ nlohmann::ordered_json ScoresJson(const std::vector<CrossValidation>& validation
 
 int Run() {
   FoldScheme scheme;
-  ReadScheme(&scheme);
+  CheckExcludes({"scheme", "folds", "repeats"}, "folds_file",
+                "--folds_file already gives the folds; leave --{} out");
+  OrFail(ParseName("--scheme", FLAGS_scheme, &scheme));
   const Setups setups = SetupsFromFlags();
-  CheckFlags(setups);
+  MakePredictors(CandidatesOf(setups));  // refuses wrong flags before any recording is read
+  CheckObservedFlag();
+  OrFail(CheckOutputFiles({FLAGS_json_out}));
   const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
   CheckPushed(recordings);
   const std::vector<PendulumRecording> pendulums = MakePendulumRecordings(recordings);
@@ -196,7 +156,12 @@ int Run() {
   for (const std::string& warning : OptionWarnings(GivenFitFlags(), options))
     LOG(WARNING) << warning;
   const Predictors predictors = MakePredictors(candidates);
-  CheckNames(predictors);
+  std::set<std::string> names;  // equal ones could not be distinguished in the tables
+  for (const Predictor& predictor : predictors) {
+    if (names.insert(predictor.name).second) continue;
+    throw Error{"--compare has more than one '" + predictor.name +
+                "'; give each configuration its own name"};
+  }
   CheckDrawn(candidates);
   const std::vector<Fold> folds = OrFail(
       FLAGS_folds_file.empty() ? MakeFolds(pendulums, scheme, FLAGS_folds, FLAGS_repeats, Seed())
@@ -214,7 +179,7 @@ int Run() {
   std::printf("%s", (FLAGS_details ? CrossValidationText(validations)
                                    : CrossValidationScreen(validations).ToString())
                         .c_str());
-  if (!FLAGS_json_out.empty()) OrFail(WriteJson(FLAGS_json_out, ScoresJson(validations)));
+  WriteIfNamed(FLAGS_json_out, ScoresJson(validations));
   return kDone;
 }
 

@@ -1,10 +1,4 @@
 // apps: pushid-evaluate: how far a model's predictions are from recordings, beside the baselines.
-#include <gflags/gflags.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 
 #include "apps/flags/command_line.h"
@@ -13,11 +7,8 @@
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/restoration_flags.h"
-#include "apps/support/app_support.h"
-#include "datasets/files/json_file.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/parameters/presets.h"
-#include "ident/prediction/evaluation.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"
 #include "ident/validation/scores_json.h"
@@ -33,17 +24,10 @@ namespace {
 
 using namespace pushid;
 
-RestorationFlags CheckedFlags() {
-  RequireModel();
-  const RestorationFlags restoration = RestorationFlagsFromCommandLine();
-  OrFail(CheckOutputFiles({FLAGS_json_out}));
-  return restoration;
-}
-
 // Evaluates bodies beside pendulums, where --restoration asks for them.
 std::optional<BodyEvaluation> Bodies(const RestorationFlags& flags, const IdentifiedModel& model,
                                      const std::vector<Recording>& recordings) {
-  if (!flags.given()) return std::optional<BodyEvaluation>();
+  if (!flags.given()) return std::nullopt;
   size_t people = 0;
   for (const Recording& recording : recordings) people = std::max(people, recording.people.size());
   const std::unique_ptr<Restoration> restoration =
@@ -54,8 +38,7 @@ std::optional<BodyEvaluation> Bodies(const RestorationFlags& flags, const Identi
     ScoreRestoration(model, *restoration, flags.postprocess, body, &scores, ObservedFrames(),
                      ForecastUseFlag());
   }
-  return std::optional<BodyEvaluation>(
-      SummarizeAll(bodies, scores, ParseLabelKeys(FLAGS_group_by)));
+  return SummarizeAll(bodies, scores, ParseLabelKeys(FLAGS_group_by));
 }
 
 // Whether errors are of recordings that the model was fitted to, which predictions of new ones are
@@ -74,7 +57,9 @@ std::string FittedText(const std::vector<PendulumRecording>& recordings) {
 }
 
 int Run() {
-  const RestorationFlags restoration = CheckedFlags();
+  RequireModel();
+  const RestorationFlags restoration = RestorationFlagsFromCommandLine();
+  OrFail(CheckOutputFiles({FLAGS_json_out}));
   const int drawn = DrawnFutures();
   CheckObservedFlag();
   const IdentifiedModel model = LoadFlaggedModel();
@@ -82,7 +67,7 @@ int Run() {
   const std::vector<Recording> recordings =
       LoadFlaggedRecordings({}, restoration.given() || NeedsJoints(model.options));
   const std::vector<PendulumRecording> pendulums = MakePendulumRecordings(recordings);
-  CheckObservedFlag(pendulums, model);
+  CheckObservedFlag(pendulums, &model);
   const LabelKeys group_by = ParseLabelKeys(FLAGS_group_by);
   OrFail(CheckGroups(pendulums, group_by));
   const std::optional<BodyEvaluation> bodies = Bodies(restoration, model, recordings);
@@ -104,7 +89,7 @@ int Run() {
   json.update(ToJson(evaluation));
   AddStepsJson(pendulums, &json);
   if (bodies) AddBodyJson(*bodies, &json);
-  if (!FLAGS_json_out.empty()) OrFail(WriteJson(FLAGS_json_out, json));
+  WriteIfNamed(FLAGS_json_out, json);
   return kDone;
 }
 

@@ -1,21 +1,10 @@
 // apps: pushid-fit: recordings in, identified parameters out.
-#include <gflags/gflags.h>
-
-#include <cstdio>
-#include <string>
-
 #include "apps/flags/command_line.h"
 #include "apps/flags/fit_option_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/support/app_support.h"
-#include "datasets/files/atomic_file.h"
-#include "datasets/files/error.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "ident/fit/fit.h"
 #include "ident/parameters/parameter_table.h"
 #include "ident/parameters/presets.h"
-#include "ident/problem/parallel.h"
 #include "ident/report/advice.h"
 #include "ident/report/page/build_report.h"
 #include "ident/report/report_text.h"

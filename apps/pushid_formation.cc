@@ -1,15 +1,9 @@
 // apps: pushid-formation: an identified model on people who stand together, from flags to a run,
 // from a run to files and a table.
-#include <gflags/gflags.h>
-
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <set>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/futures_flags.h"
@@ -17,20 +11,13 @@
 #include "apps/flags/overwrite_flag.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/restoration_flags.h"
-#include "apps/support/app_support.h"
-#include "datasets/files/atomic_file.h"
-#include "datasets/files/error.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/trajectories.h"
-#include "datasets/loading/load_recordings.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/figures/text_table.h"
 #include "ident/formations/formation_files.h"
 #include "ident/formations/formation_run.h"
-#include "ident/model/model_json.h"
 #include "ident/prediction/predicted_steps.h"
 #include "models/formation.h"
 #include "models/restoration/body.h"
@@ -84,13 +71,6 @@ using namespace pushid;
 
 PushRange FittedTo(const IdentifiedModel& model) { return model.push_range.value_or(PushRange{}); }
 
-struct FormationFlags {
-  std::string title;               // "10 people in a line, 0.45 m apart; 80 N s on person 0 at 0 s"
-  Scene scene;                     // people and pushes
-  std::vector<std::string> names;  // of people who come from a file; otherwise empty
-  int frames = 0;
-  std::vector<Pose> first_poses;  // of the recorded people of --recordings; otherwise empty
-};
 constexpr double kMostPersonFrames = 2e6;  // half a gigabyte of forces
 constexpr double kWatchSeconds = 6.0;      // after the last push
 constexpr int kMostPeople = 10000;
@@ -100,18 +80,7 @@ bool FromFile() {
   return format && HoldsCrowd(*format);
 }
 
-FormationShape Shape() {
-  if (const auto shape = FromName<FormationShape>(FLAGS_formation)) return *shape;
-  throw Error{"--formation is '" + FLAGS_formation +
-              "'; it must be line, diamond or grid, or a trajectory file (.txt)"};
-}
-
-struct Places {
-  std::vector<Eigen::Vector2d> positions;
-  std::vector<std::string> names;  // of a file's people
-};
-
-Places PlacesOfFile() {
+std::vector<CrowdPlace> PlacesOfFile() {
   for (const char* flag : {"people", "spacing"}) {
     if (!Given(flag)) continue;
     throw Error{std::string("--") + flag + " is for line, diamond and grid; " + FLAGS_formation +
@@ -119,33 +88,34 @@ Places PlacesOfFile() {
   }
   std::optional<std::int64_t> frame;
   if (Given("formation_frame")) frame = FLAGS_formation_frame;
-  const std::vector<CrowdPlace> read =
+  std::vector<CrowdPlace> places =
       OrFail(PlacesAt(OrFail(ReadTrajectoryText(FLAGS_formation)), frame));
-  const std::string odd = OddSpacing(read);
+  const std::string odd = OddSpacing(places);
   if (!odd.empty()) LOG(WARNING) << FLAGS_formation << ": " << odd;
-  Places places;
-  for (const CrowdPlace& place : read) {
-    places.positions.push_back(place.position);
-    places.names.push_back(place.name);
+  if (places.size() <= kMostPeople) return places;
+  throw Error{std::to_string(places.size()) + " people are too many", FLAGS_formation};
+}
+
+// Only the people of a file have names.
+std::vector<CrowdPlace> FormationPlaces() {
+  if (FromFile()) return PlacesOfFile();
+  if (Given("formation_frame")) throw Error{"--formation_frame needs a trajectory file (.txt)"};
+  const auto shape = FromName<FormationShape>(FLAGS_formation);
+  if (!shape) {
+    throw Error{"--formation is '" + FLAGS_formation +
+                "'; it must be line, diamond or grid, or a trajectory file (.txt)"};
   }
-  if (places.names.size() > kMostPeople) {
-    throw Error{std::to_string(places.names.size()) + " people are too many", FLAGS_formation};
+  std::vector<CrowdPlace> places;
+  for (const Eigen::Vector2d& at : FormationPositions(*shape, FLAGS_people, FLAGS_spacing)) {
+    places.push_back({"", at});
   }
   return places;
 }
 
-Places FormationPlaces() {
-  if (FromFile()) return PlacesOfFile();
-  if (Given("formation_frame")) {
-    throw Error{"--formation_frame needs a trajectory file (.txt)"};
-  }
-  return {FormationPositions(Shape(), FLAGS_people, FLAGS_spacing), {}};
-}
-
 // People are counted from the back, whatever the file's ids.
-std::vector<int> PushedPeople(const Places& places) {
+std::vector<int> PushedPeople(const std::vector<CrowdPlace>& places) {
   std::vector<int> people;
-  std::set<int> seen;
+  const int count = static_cast<int>(places.size());
   for (const std::string& spaced : SplitList(FLAGS_pushed)) {
     const std::string word(Trimmed(spaced));
     std::int64_t person = 0;
@@ -153,19 +123,18 @@ std::vector<int> PushedPeople(const Places& places) {
       throw Error{"--pushed: " + Quoted(word) +
                   " is not a person's number; give numbers as in 0,1,3"};
     }
-    const int count = static_cast<int>(places.positions.size());
     if (person < 0 || person >= count) {
-      const auto named = std::find(places.names.begin(), places.names.end(), word);
-      if (named != places.names.end()) {
+      for (int n = 0; n < count; ++n) {
+        if (places[n].name != word) continue;
         throw Error{"--pushed counts people from the back, from 0; the file's id " + word +
-                    " is person " + std::to_string(named - places.names.begin())};
+                    " is person " + std::to_string(n)};
       }
       throw Error{"--pushed names person " + word + ", but " +
                   (FromFile() ? "the " + std::to_string(count) + " people of the file count"
                               : "--people=" + std::to_string(count) + " counts them") +
                   " from 0 to " + std::to_string(count - 1)};
     }
-    if (!seen.insert(static_cast<int>(person)).second) {
+    if (std::count(people.begin(), people.end(), person) > 0) {
       throw Error{"--pushed names person " + word + " twice"};
     }
     people.push_back(static_cast<int>(person));
@@ -195,27 +164,6 @@ HipPush ParsePush(const std::string& word, const UsualPush& usual) {
     throw Error{"--push: " + Quoted(word) + " starts at a time outside 0 to 3600 s"};
   }
   return push;
-}
-
-std::vector<HipPush> Pushes(const UsualPush& usual) {
-  std::vector<HipPush> pushes;
-  for (const std::string& word : SplitList(FLAGS_push)) {
-    pushes.push_back(ParsePush(std::string(Trimmed(word)), usual));
-  }
-  if (pushes.empty()) pushes.push_back(ParsePush(Rounded(usual.impulse, 2), usual));
-  return pushes;
-}
-
-void CheckFormationNumbers() {
-  CheckRange("people", FLAGS_people, 1, kMostPeople);
-  CheckRange("fps", FLAGS_fps, 10, 10000);
-  CheckRange("spacing", FLAGS_spacing, 0.05, 100);
-  if (FLAGS_push_duration != 0.0) CheckRange("push_duration", FLAGS_push_duration, 0.001, 60);
-  CheckRange("direction", FLAGS_direction, -360, 360);
-  if (FLAGS_mass != 0.0) CheckRange("mass", FLAGS_mass, 1, 400);
-  CheckRange("duration", FLAGS_duration, 0, 3600);
-  CheckExcludes({"mass"}, "recordings",
-                "--recordings gives the recorded people's mass and rod length; leave out --{}");
 }
 
 constexpr double kMassUnknown = 80.0;  // kg, of models that do not tell whom they were fitted to
@@ -268,12 +216,6 @@ std::string RunTitle(int people, const std::vector<HipPush>& pushes) {
   return text.str();
 }
 
-int NumFrames(const Scene& scene) {
-  const double seconds =
-      FLAGS_duration > 0.0 ? FLAGS_duration : scene.LastPushEnd() * scene.dt + kWatchSeconds;
-  return static_cast<int>(std::lround(seconds * FLAGS_fps)) + 1;
-}
-
 void CheckFrames(int frames, int people, const std::vector<HipPush>& pushes) {
   if (frames < 3) throw Error{"--duration is shorter than two frames"};
   for (const HipPush& push : pushes) {
@@ -289,25 +231,44 @@ void CheckFrames(int frames, int people, const std::vector<HipPush>& pushes) {
   }
 }
 
-// Errors name the flag.
+// The formation as the flags describe it.
+struct FormationFlags {
+  std::string title;               // "10 people in a line, 0.45 m apart; 80 N s on person 0 at 0 s"
+  Scene scene;                     // people and pushes
+  std::vector<std::string> names;  // of people who come from a file; otherwise empty
+  int frames = 0;
+  std::vector<Pose> first_poses;  // of the recorded people of --recordings; otherwise empty
+};
+
 FormationFlags FormationFlagsFromCommandLine(const IdentifiedModel& model) {
   Require("formation", FLAGS_formation, "give line, diamond or grid, or a trajectory file");
-  const Places placed = FormationPlaces();
-  const std::vector<Eigen::Vector2d>& positions = placed.positions;
-  const int people = static_cast<int>(positions.size());
-  const std::vector<int> pushed = PushedPeople(placed);
-  const std::vector<HipPush> pushes = Pushes(FittedTo(model).usual.value_or(UsualPush{}));
+  const std::vector<CrowdPlace> places = FormationPlaces();
+  const std::vector<int> pushed = PushedPeople(places);
+  const UsualPush usual = FittedTo(model).usual.value_or(UsualPush{});
+  std::vector<HipPush> pushes;
+  for (const std::string& word : SplitList(FLAGS_push)) {
+    pushes.push_back(ParsePush(std::string(Trimmed(word)), usual));
+  }
+  if (pushes.empty()) pushes.push_back(ParsePush(Rounded(usual.impulse, 2), usual));
 
   FormationFlags flags;
+  std::vector<Eigen::Vector2d> positions;
+  const bool named = FromFile();
+  for (const CrowdPlace& place : places) {
+    positions.push_back(place.position);
+    if (named) flags.names.push_back(place.name);
+  }
+  const int people = static_cast<int>(places.size());
   flags.title = RunTitle(people, pushes);
-  flags.names = placed.names;
   const double mass = FLAGS_mass > 0.0 ? FLAGS_mass : kMassUnknown;
   flags.scene = FormationScene(positions, {mass, kReferenceRod, 0.0}, 1.0 / FLAGS_fps);
   flags.first_poses = PlaceFlaggedPeople(model, &flags.scene);
   for (const HipPush& push : pushes) {
     for (int person : pushed) AddHipPush(person, push, &flags.scene);
   }
-  flags.frames = NumFrames(flags.scene);
+  double seconds = FLAGS_duration;
+  if (seconds <= 0.0) seconds = flags.scene.LastPushEnd() * flags.scene.dt + kWatchSeconds;
+  flags.frames = static_cast<int>(std::lround(seconds * FLAGS_fps)) + 1;
   CheckFrames(flags.frames, people, pushes);
   return flags;
 }
@@ -338,9 +299,9 @@ std::string WhoText(const IdentifiedModel& model, const FormationRun& run) {
          Rounded(impulse.norm(), 3) + " N s";
 }
 
-std::string Fixed(double value, int decimals) {
+std::string Fixed(double value) {  // with two decimals
   char text[64];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  std::snprintf(text, sizeof text, "%.2f", value);
   return text;
 }
 
@@ -354,15 +315,15 @@ void PrintPeople(const FormationRun& run, bool named) {
   for (int n = 0; n < run.num_people(); ++n) {
     const PersonSummary& person = run.summaries[n];
     const Vector4<double>& q = run.recording.scene.people[n].start.q;
-    std::vector<std::string> row = {
-        std::to_string(n),
-        Fixed(q[0], 2),
-        Fixed(q[1], 2),
-        person.onset_frame < 0 ? "-" : Fixed(run.Seconds(person.onset_frame), 2),
-        Fixed(person.peak_speed, 2),
-        Fixed(person.displacement, 2),
-        NameOf(person.outcome)};
-    if (steps) row.push_back(Fixed(run.prediction.steps[n].probability, 2));
+    const std::string onset = person.onset_frame < 0 ? "-" : Fixed(run.Seconds(person.onset_frame));
+    std::vector<std::string> row = {std::to_string(n),
+                                    Fixed(q[0]),
+                                    Fixed(q[1]),
+                                    onset,
+                                    Fixed(person.peak_speed),
+                                    Fixed(person.displacement),
+                                    NameOf(person.outcome)};
+    if (steps) row.push_back(Fixed(run.prediction.steps[n].probability));
     if (named) row.push_back(run.recording.subject_ids[n]);
     table.Add(row);
   }
@@ -370,23 +331,6 @@ void PrintPeople(const FormationRun& run, bool named) {
   if (run.prediction.feet_step) {
     std::printf("%s", PredictedStepsText(run.recording, run.prediction).c_str());
   }
-}
-
-// Warnings of the fit hold for what is simulated with it.
-void PrintFitWarnings(const FittedModel& model) {
-  for (const std::string& warning : GroupedWarnings(model.fit.warnings)) {
-    std::printf("warning of the fit: %s\n", warning.c_str());
-  }
-}
-
-// The reason why the push has no single speed; empty where it has one.
-std::string WhyNoSpeed(const Scene& scene) {
-  const size_t pushes = scene.pushes.size();
-  const bool one_person = std::all_of(
-      scene.pushes.begin(), scene.pushes.end(),
-      [&scene](const ScenePush& push) { return push.person == scene.pushes.front().person; });
-  if (!one_person) return "; no speed: several people are pushed";
-  return pushes > 1 ? "; no speed: there are several pushes" : "";
 }
 
 // With more people the draws behind an interval take longer than the simulation should.
@@ -425,7 +369,13 @@ void PrintWave(const FormationRun& run, const WaveBands& bands, const std::strin
                     [](const PersonSummary& person) { return person.onset_frame >= 0; });
   std::string text = std::to_string(moved) + " of " + std::to_string(run.num_people()) +
                      " people moved by 2 cm or more";
-  if (moved > 1) text += WhyNoSpeed(run.recording.scene);
+  std::set<int> pushed;
+  for (const ScenePush& push : run.recording.scene.pushes) pushed.insert(push.person);
+  if (moved > 1 && pushed.size() > 1) {
+    text += "; no speed: several people are pushed";
+  } else if (moved > 1 && run.recording.scene.pushes.size() > 1) {
+    text += "; no speed: there are several pushes";
+  }
   if (const std::optional<WaveSpeed> wave = SpeedOfWave(run)) text += SpeedText(*wave, bands);
   std::printf("%s\n", text.c_str());
   if (bands.speed.draws > 0 && !held.empty()) {
@@ -439,32 +389,29 @@ void PrintWave(const FormationRun& run, const WaveBands& bands, const std::strin
 // Steps much longer than those of the recordings make stiff contact unstable.
 constexpr double kUsualFps = 60.0;
 
-std::string LeftDomainAdvice(double fps) {
-  return fps < kUsualFps - 0.5
-             ? "the time step is long: try --fps=60, and if that does not help a weaker --push"
-             : "the person falls: try a weaker or longer push (--push, --push_duration), or a "
-               "higher --fps if the push is no harder than those the model was fitted to";
-}
-
-int LeftDomain(const RolloutStatus& status, double dt) {
-  return Fail(OutsideText(status) + "; " + LeftDomainAdvice(1.0 / dt) + "; nothing is written",
-              kFitFailed);
+int LeftDomain(const RolloutStatus& status) {
+  const char* const advice =
+      FLAGS_fps < kUsualFps - 0.5
+          ? "the time step is long: try --fps=60, and if that does not help a weaker --push"
+          : "the person falls: try a weaker or longer push (--push, --push_duration), or a "
+            "higher --fps if the push is no harder than those the model was fitted to";
+  return Fail(OutsideText(status) + "; " + advice + "; nothing is written", kFitFailed);
 }
 
 // Takes the parameters of the named setting, or condition, for every person.
 void ActAsIn(const std::string& setting, IdentifiedModel* model) {
   if (setting.empty()) return;
-  const auto found = model->by_unit.find(setting);
-  if (HoldsForRecording(model->pool_by) && found != model->by_unit.end()) {
-    model->parameters = found->second;
-    return;
-  }
-  std::string known;
-  if (HoldsForRecording(model->pool_by)) {
-    for (const auto& [name, values] : model->by_unit) known += (known.empty() ? "" : ", ") + name;
+  std::vector<std::string> known;
+  for (const auto& [name, values] : model->by_unit) {
+    if (!HoldsForRecording(model->pool_by)) break;
+    if (name == setting) {
+      model->parameters = values;
+      return;
+    }
+    known.push_back(name);
   }
   throw Error{"--setting names '" + setting + "'; " + model->source + " has " +
-              (known.empty() ? "no settings (--pool_by=setting fits them)" : known)};
+              (known.empty() ? "no settings (--pool_by=setting fits them)" : Joined(known))};
 }
 
 void CheckOutputFlags(int people, bool bodies) {
@@ -510,12 +457,20 @@ void WriteOutputs(const FormationRun& run, const std::vector<OnsetBand>& onsets,
     return WriteFileAtomically(file, AnimationHtml({animation}));
   });
   write(FLAGS_poses_out, [&](auto& file) { return WriteJointsCsv(file, scene); });
-  if (!FLAGS_bodies_out.empty()) OrFail(WriteBodyBvh(FLAGS_bodies_out, scene));
+  write(FLAGS_bodies_out, [&](auto& file) { return WriteBodyBvh(file, scene); });
 }
 
 int Run() {
   RequireModel();
-  CheckFormationNumbers();
+  CheckRange("people", FLAGS_people, 1, kMostPeople);
+  CheckRange("fps", FLAGS_fps, 10, 10000);
+  CheckRange("spacing", FLAGS_spacing, 0.05, 100);
+  if (FLAGS_push_duration != 0.0) CheckRange("push_duration", FLAGS_push_duration, 0.001, 60);
+  CheckRange("direction", FLAGS_direction, -360, 360);
+  if (FLAGS_mass != 0.0) CheckRange("mass", FLAGS_mass, 1, 400);
+  CheckRange("duration", FLAGS_duration, 0, 3600);
+  CheckExcludes({"mass"}, "recordings",
+                "--recordings gives the recorded people's mass and rod length; leave out --{}");
   IdentifiedModel model = LoadFlaggedModel();
   FormationFlags flags = FormationFlagsFromCommandLine(model);
   Scene& scene = flags.scene;
@@ -533,7 +488,7 @@ int Run() {
   ActAsIn(FLAGS_setting, &model);
   const FormationRun run = RunFormation(model, scene, flags.frames, flags.names);
   WarnGrouped(InputWarnings(model, {run.recording}));
-  if (!run.prediction.status.ok) return LeftDomain(run.prediction.status, scene.dt);
+  if (!run.prediction.status.ok) return LeftDomain(run.prediction.status);
   const FittedModel fitted = OrFail(ReadFittedModel(ModelFile()));
   // A model does not hold the uncertainty of a setting's own parameters, so there are no bands
   // then.
@@ -550,7 +505,10 @@ int Run() {
               Rounded(run.Seconds(run.num_frames() - 1), 3).c_str(), WhoText(model, run).c_str());
   PrintPeople(run, !flags.names.empty());
   PrintWave(run, bands, HeldInDraws(fitted, FLAGS_set), setting);
-  PrintFitWarnings(fitted);
+  // Warnings of the fit hold for the people that are simulated with it.
+  for (const std::string& warning : GroupedWarnings(fitted.fit.warnings)) {
+    std::printf("warning of the fit: %s\n", warning.c_str());
+  }
   return PrintFutures(model, run.recording, run.num_frames());
 }
 

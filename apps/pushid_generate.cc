@@ -1,23 +1,10 @@
 // apps: pushid-generate: motion continued by a learned generator, judged and shown: windows of
 // motion capture, and recorded groups.
-#include <gflags/gflags.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/published_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/support/app_support.h"
-#include "datasets/files/atomic_file.h"
-#include "datasets/files/json_file.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "datasets/loading/generator_data.h"
 #include "ident/bodies/animation.h"
@@ -26,26 +13,23 @@
 #include "ident/forecasts/forecast_scene.h"
 #include "ident/forecasts/forecast_spread.h"
 #include "ident/forecasts/social_report.h"
-#include "ident/generators/generator_files.h"
 #include "ident/model/identified_model.h"
 #include "ident/model/model_json.h"
 #include "ident/model/model_rollout.h"
-#include "ident/problem/parallel.h"
 #include "ident/validation/scores_json.h"
 
 namespace {
 
 using namespace pushid;
 
-// What follows from several flags.
+// Options that follow from several flags.
 struct GenerateOptions {
   GeneratorChanges changes;
   int scored_samples = 1;  // of every group, each scored by itself
   ForecastProtocol protocol = ForecastProtocol::kValidation;
 };
 
-// Poses of the strip.
-inline constexpr int kStripPoses = 6;
+constexpr int kStripPoses = 6;
 
 const GenerateOptions kOptions;
 
@@ -137,18 +121,6 @@ void SetPublished(GenerateOptions* options) {
   }
 }
 
-void CheckNumbers() {
-  if (FLAGS_samples != 0) CheckRange("samples", FLAGS_samples, kLeastSamples, 10000);
-  CheckRange("window", FLAGS_window, 0, 1e9);
-  CheckRange("target_window", FLAGS_target_window, -1, 1e9);
-  CheckRange("observed", FLAGS_observed, 0, 1000);
-  CheckRange("frames", FLAGS_frames, 0, 10000);
-  OrFail(CheckPosesPath("--poses_out", FLAGS_poses_out));
-  if (FLAGS_target_window >= 0 && FLAGS_samples == 0) {
-    throw Error{"--target_window needs --samples, among which it looks"};
-  }
-}
-
 // Errors: flags that say something to generators of the other kind alone, or that this kind needs.
 void CheckKindFlags(const GenerateOptions& options, GeneratorKind kind) {
   const bool groups = RowOf(kind).groups;
@@ -176,7 +148,15 @@ GenerateOptions OptionsFromCommandLine() {
   GenerateOptions options;
   Require("model", FLAGS_model, "name the folder that pushid-train-generator --out wrote");
   OrFail(ParseName("--protocol", FLAGS_protocol, &options.protocol));
-  CheckNumbers();
+  if (FLAGS_samples != 0) CheckRange("samples", FLAGS_samples, kLeastSamples, 10000);
+  CheckRange("window", FLAGS_window, 0, 1e9);
+  CheckRange("target_window", FLAGS_target_window, -1, 1e9);
+  CheckRange("observed", FLAGS_observed, 0, 1000);
+  CheckRange("frames", FLAGS_frames, 0, 10000);
+  OrFail(CheckPosesPath("--poses_out", FLAGS_poses_out));
+  if (FLAGS_target_window >= 0 && FLAGS_samples == 0) {
+    throw Error{"--target_window needs --samples, among which it looks"};
+  }
   ReadChanges(&options.changes);
   SetPublished(&options);
   options.changes.seed = FLAGS_seed;
@@ -234,22 +214,8 @@ size_t FindWindow(const std::vector<ForecastWindow>& windows, const std::string&
               "; --window and --target_window count from 0"};
 }
 
-// The scene's forecast becomes the most probable path to the target; its outcome goes to `json`.
-void SearchPath(const Eigen::VectorXf& target, ForecastScene* scene, Json* json) {
-  scene->title += ", towards the end of window " + std::to_string(FLAGS_target_window);
-  const PathChoice choice =
-      OrFail(MostProbablePath(scene->futures, target, kTargetDistance, scene->layout));
-  (*json)["path"] = {{"future", choice.future + 1},
-                     {"near", choice.near},
-                     {"distance_m", choice.distance},
-                     {"log_likelihood", choice.log_likelihood}};
-  std::printf("%d of %d futures end near window %d; the most probable is the %d., %s m from it\n",
-              choice.near, FLAGS_samples, FLAGS_target_window, choice.future + 1,
-              Rounded(choice.distance, 3).c_str());
-  scene->forecast = scene->futures[choice.future].motion;
-}
-
-// The window's forecast and futures; of a search its outcome goes to `json`.
+// The window's forecast and futures. With --target_window the forecast is the most probable path to
+// that window's end, whose outcome goes to `json`.
 ForecastScene SceneOfWindow(const MotionGenerator& generator,
                             const std::vector<ForecastWindow>& windows, Json* json) {
   const size_t at = FindWindow(windows, FLAGS_action, FLAGS_window);
@@ -265,22 +231,29 @@ ForecastScene SceneOfWindow(const MotionGenerator& generator,
   if (FLAGS_target_window < 0) return scene;
   const size_t target = FindWindow(windows, FLAGS_action, FLAGS_target_window);
   const Eigen::VectorXf end = windows[target].future.rightCols(1);
-  SearchPath(end, &scene, json);
+  scene.title += ", towards the end of window " + std::to_string(FLAGS_target_window);
+  const PathChoice choice =
+      OrFail(MostProbablePath(scene.futures, end, kTargetDistance, scene.layout));
+  (*json)["path"] = {{"future", choice.future + 1},
+                     {"near", choice.near},
+                     {"distance_m", choice.distance},
+                     {"log_likelihood", choice.log_likelihood}};
+  std::printf("%d of %d futures end near window %d; the most probable is the %d., %s m from it\n",
+              choice.near, FLAGS_samples, FLAGS_target_window, choice.future + 1,
+              Rounded(choice.distance, 3).c_str());
+  scene.forecast = scene.futures[choice.future].motion;
   return scene;
 }
 
-// Writes the files of --poses_out, --svg_out and --html_out; their names go to stdout.
-void ShowForecast(const ForecastScene& scene) {
-  if (!FLAGS_poses_out.empty()) {
-    const auto files = OrFail(WritePoses(FLAGS_poses_out, scene));
-    for (const std::string& file : files) std::printf("%s\n", file.c_str());
+// Writes the files of --svg_out and --html_out, and prints their names behind those of the poses.
+template <typename Strip, typename Page>
+void Show(std::vector<std::string> files, Strip strip, Page page) {
+  if (!FLAGS_svg_out.empty()) OrFail(WriteFileAtomically(FLAGS_svg_out, strip()));
+  if (!FLAGS_html_out.empty()) OrFail(WriteFileAtomically(FLAGS_html_out, page()));
+  files.insert(files.end(), {FLAGS_svg_out, FLAGS_html_out});
+  for (const std::string& file : files) {
+    if (!file.empty()) std::printf("%s\n", file.c_str());
   }
-  const auto write = [](const std::string& file, const std::string& content) {
-    OrFail(WriteFileAtomically(file, content));
-    std::printf("%s\n", file.c_str());
-  };
-  if (!FLAGS_svg_out.empty()) write(FLAGS_svg_out, ForecastStripSvg(scene, kStripPoses));
-  if (!FLAGS_html_out.empty()) write(FLAGS_html_out, ForecastPageHtml(scene));
 }
 
 int FromClips(const TrainedNetworks& trained, const GenerateOptions& options) {
@@ -311,29 +284,19 @@ int FromClips(const TrainedNetworks& trained, const GenerateOptions& options) {
   json.update(ToJson(scores));
   json["baselines"]["zero_velocity"] = ToJson(ScoresOf(windows, ZeroVelocity(windows), layout));
   if (Shows() || FLAGS_target_window >= 0) {
-    ShowForecast(SceneOfWindow(*generator, windows, &json));
+    const ForecastScene scene = SceneOfWindow(*generator, windows, &json);
+    std::vector<std::string> poses;
+    if (!FLAGS_poses_out.empty()) poses = OrFail(WritePoses(FLAGS_poses_out, scene));
+    Show(
+        poses, [&] { return ForecastStripSvg(scene, kStripPoses); },
+        [&] { return ForecastPageHtml(scene); });
   }
   json["run"] = {{"seconds_per_window", per_window}};
-  if (FLAGS_json_out.empty()) return kDone;
-  OrFail(WriteJson(FLAGS_json_out, json));
+  WriteIfNamed(FLAGS_json_out, json);
   return kDone;
 }
 
 // Groups forecast and shown.
-
-std::vector<std::string> WriteGroup(const std::string& path, const BodyScene& scene) {
-  if (IsBodyFile(path)) return OrFail(WriteBodyBvh(path, scene));
-  OrFail(WriteJointsCsv(path, scene));
-  return {path};
-}
-
-// The model of --physics; nothing where none is named.
-std::optional<IdentifiedModel> LoadPhysics() {
-  if (FLAGS_physics.empty()) return std::nullopt;
-  IdentifiedModel model = ModelOf(OrFail(ReadFittedModel(FLAGS_physics)).fit);
-  model.source = FLAGS_physics;
-  return model;
-}
 
 // A recording's forecast by a generator of any kind, to its end or for `frames` frames in all;
 // the generator gets physics that see as many frames.
@@ -366,13 +329,11 @@ SocialCues FlaggedCues(const std::vector<BodyRecording>& recordings) {
 }
 
 // Writes the files of --poses_out, --svg_out and --html_out: everybody recorded, forecast, and
-// beside them the pendulums of the physics; the page shows the figures too. Returns the files'
-// names.
-std::vector<std::string> ShowGroup(const GeneratorSettings& settings,
-                                   const TrainedNetworks& trained, const GenerateOptions& options,
-                                   const BodyRecording& recording,
-                                   const std::optional<IdentifiedModel>& physics,
-                                   const std::vector<std::string>& figures) {
+// beside them the pendulums of the physics; the page shows the figures too.
+void ShowGroup(const GeneratorSettings& settings, const TrainedNetworks& trained,
+               const GenerateOptions& options, const BodyRecording& recording,
+               const std::optional<IdentifiedModel>& physics,
+               const std::vector<std::string>& figures) {
   const auto bodies =
       GenerateWith(settings, *trained.Make(options.changes), recording, physics, FLAGS_frames);
   Animation animation;
@@ -386,29 +347,15 @@ std::vector<std::string> ShowGroup(const GeneratorSettings& settings,
     const Prediction predicted = OrFail(PredictBeside(settings, *physics, recording, FLAGS_frames));
     AddPrediction(recording.pendulum, predicted, {}, &animation);
   }
-  std::vector<std::string> files;
-  if (!FLAGS_poses_out.empty()) {
-    files = WriteGroup(FLAGS_poses_out, SceneOf(recording, bodies));
+  std::vector<std::string> files = {FLAGS_poses_out};
+  if (IsBodyFile(FLAGS_poses_out)) {
+    files = OrFail(WriteBodyBvh(FLAGS_poses_out, SceneOf(recording, bodies)));
+  } else if (!FLAGS_poses_out.empty()) {
+    OrFail(WriteJointsCsv(FLAGS_poses_out, SceneOf(recording, bodies)));
   }
-  if (!FLAGS_svg_out.empty()) {
-    OrFail(WriteFileAtomically(FLAGS_svg_out, PoseStrip(animation, kStripPoses).ToString()));
-    files.push_back(FLAGS_svg_out);
-  }
-  if (!FLAGS_html_out.empty()) {
-    OrFail(WriteFileAtomically(FLAGS_html_out, AnimationHtml({animation})));
-    files.push_back(FLAGS_html_out);
-  }
-  return files;
-}
-
-// Once for all recordings whose pushes are of such kinds.
-void WarnOfPushKinds(const GeneratorSettings& settings,
-                     const std::vector<BodyRecording>& recordings) {
-  std::set<std::string> told;
-  for (const BodyRecording& recording : recordings) {
-    const std::string other = OtherPushKinds(settings, recording.pendulum.scene);
-    if (!other.empty() && told.insert(other).second) LOG(WARNING) << other;
-  }
+  Show(
+      files, [&] { return PoseStrip(animation, kStripPoses).ToString(); },
+      [&] { return AnimationHtml({animation}); });
 }
 
 // The forecasts of one generator, and of the baselines.
@@ -433,7 +380,11 @@ BodyScores ScoreGroups(const GeneratorSettings& settings, const MotionGenerator&
 }
 
 int FromGroups(const TrainedNetworks& trained, const GenerateOptions& options) {
-  const std::optional<IdentifiedModel> physics = LoadPhysics();
+  std::optional<IdentifiedModel> physics;
+  if (!FLAGS_physics.empty()) {
+    physics = ModelOf(OrFail(ReadFittedModel(FLAGS_physics)).fit);
+    physics->source = FLAGS_physics;
+  }
   const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
   const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings));
   const BodyRecording* shown = nullptr;
@@ -445,7 +396,11 @@ int FromGroups(const TrainedNetworks& trained, const GenerateOptions& options) {
   }
   GeneratorSettings settings = trained.settings;
   if (FLAGS_observed > 0) settings.observed = FLAGS_observed;
-  WarnOfPushKinds(settings, bodies);
+  std::set<std::string> kinds;  // each is warned of once
+  for (const BodyRecording& recording : bodies) {
+    const std::string other = OtherPushKinds(settings, recording.pendulum.scene);
+    if (!other.empty() && kinds.insert(other).second) LOG(WARNING) << other;
+  }
   const SocialCues cues = FlaggedCues(bodies);
   double seconds = 0.0;
   std::vector<Json> samples;
@@ -461,12 +416,8 @@ int FromGroups(const TrainedNetworks& trained, const GenerateOptions& options) {
     std::printf("%s\n%s", BodyText(evaluation).c_str(), TimedErrorsText(evaluation).c_str());
     if (social) std::printf("\n%s", SocialText(*social).c_str());
     if (!Shows()) continue;
-    const std::vector<std::string> figures =
-        social ? SocialFigures(*social, "generator") : std::vector<std::string>();
-    for (const std::string& file :
-         ShowGroup(settings, trained, options, *shown, physics, figures)) {
-      std::printf("%s\n", file.c_str());
-    }
+    ShowGroup(settings, trained, options, *shown, physics,
+              social ? SocialFigures(*social, "generator") : std::vector<std::string>());
   }
   Json json = ResultHead(kScoresSchema);
   json.update(MeanOfSamples(samples));
@@ -475,9 +426,8 @@ int FromGroups(const TrainedNetworks& trained, const GenerateOptions& options) {
         "\n%d samples, each scored, in the mean: %s\n", options.scored_samples,
         MetricsText(kBodyMetrics, OrFail(MeanMetrics(json, kBodyMetrics, FLAGS_model)), 3).c_str());
   }
-  if (FLAGS_json_out.empty()) return kDone;
   json["run"] = {{"seconds_per_recording", seconds}};
-  OrFail(WriteJson(FLAGS_json_out, json));
+  WriteIfNamed(FLAGS_json_out, json);
   return kDone;
 }
 

@@ -1,15 +1,7 @@
 // apps: pushid-inspect: what files hold, and what about them will matter.
-#include <gflags/gflags.h>
-
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <string>
-#include <vector>
 
 #include "apps/flags/command_line.h"
-#include "datasets/files/atomic_file.h"
-#include "datasets/files/json_file.h"
 #include "datasets/inspection/inspection.h"
 #include "datasets/manifest/joint_mapping.h"
 #include "ident/figures/chart.h"
@@ -37,7 +29,7 @@ void CheckFlags() {
   if (FLAGS_svg_out.empty() && FLAGS_json_out.empty()) return;
   if (FLAGS_wave) throw Error{"--wave writes no files; leave --svg_out and --json_out out"};
   for (const std::string& file : g_files) {
-    OrFail(OutputFiles().CheckNotRead("the command line", file));
+    OrFail(CheckNotRead("the command line", file));
   }
   if (!FLAGS_svg_out.empty() && g_files.size() > 1) {
     throw Error{"--svg_out draws one file, not " + std::to_string(g_files.size())};

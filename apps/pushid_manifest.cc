@@ -1,15 +1,8 @@
 // apps: pushid-manifest: a manifest from a folder and a naming pattern.
-#include <gflags/gflags.h>
-
-#include <cstdio>
-#include <filesystem>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/overwrite_flag.h"
-#include "datasets/files/names.h"
 #include "datasets/inspection/inspection.h"
 #include "datasets/inspection/manifest_maker.h"
 
@@ -44,34 +37,17 @@ namespace {
 
 using namespace pushid;
 
-void CheckManifestFlags() {
+ManifestOptions OptionsFromFlags() {
   Require("folder", FLAGS_folder, "name the folder of the recordings");
   Require("pattern", FLAGS_pattern,
           "give the pattern of the file names, as in {subject}_{take}.bvh");
   Require("out", FLAGS_out, "name the manifest to write");
-  if (!(FLAGS_mass >= 0.0 && FLAGS_mass <= 400.0)) {
-    throw Error{"--mass must be a mass of at most 400 kg"};
-  }
-  if (FLAGS_fps != 0.0 && !(FLAGS_fps >= 1.0 && FLAGS_fps <= 1e4)) {
-    throw Error{"--fps must be from 1 to 10000 frames per second"};
-  }
+  CheckRange("mass", FLAGS_mass, 0, 400);
+  if (FLAGS_fps != 0.0) CheckRange("fps", FLAGS_fps, 1, 10000);
   if (!FLAGS_update) {
     OrFail(CheckNew("out", FLAGS_out, ", --update adds what is new and keeps its entries"));
   }
   OrFail(CheckOutputFiles({FLAGS_out}));
-}
-
-// The flags that name a choice or a file.
-void ReadNamed(ManifestOptions* options) {
-  if (!FLAGS_masses.empty()) {
-    options->people = OrFail(ReadPeople(FLAGS_masses));
-  }
-  OrFail(ParseName("--push_kind", FLAGS_push_kind, &options->push_kind));
-  TakeLength(FLAGS_length_unit, FLAGS_length_scale, &options->length_unit, &options->length_scale);
-}
-
-ManifestOptions OptionsFromFlags() {
-  CheckManifestFlags();
   ManifestOptions options;
   options.folder = FLAGS_folder;
   options.pattern = FLAGS_pattern;
@@ -83,25 +59,22 @@ ManifestOptions OptionsFromFlags() {
   options.mapping = FLAGS_mapping;
   options.up = FLAGS_up;
   options.forward = FLAGS_forward;
-  ReadNamed(&options);
+  if (!FLAGS_masses.empty()) options.people = OrFail(ReadPeople(FLAGS_masses));
+  OrFail(ParseName("--push_kind", FLAGS_push_kind, &options.push_kind));
+  TakeLength(FLAGS_length_unit, FLAGS_length_scale, &options.length_unit, &options.length_scale);
   return options;
 }
 
 // Throws where --out would replace a file that the patterns find, which no flag names.
 void CheckFilesKept(const Manifest& manifest, const std::string& path) {
-  const OutputFiles outputs;
   for (const ManifestRecording& recording : manifest.recordings) {
     std::vector<std::string> files = recording.motion;
     files.push_back(recording.push_csv);
     for (const std::string& file : files) {
       if (file.empty()) continue;
-      OrFail(outputs.CheckNotRead("--folder", ResolvePath(path, file)));
+      OrFail(CheckNotRead("--folder", ResolvePath(path, file)));
     }
   }
-}
-
-void PrintIds(const char* what, const std::vector<std::string>& ids) {
-  if (!ids.empty()) std::printf("%s: %s\n", what, ListOfNames(ids).c_str());
 }
 
 // The manifest that is there, with the folder's new recordings behind its entries, which stay as
@@ -123,8 +96,10 @@ Manifest Updated(const std::string& path, const std::vector<ManifestRecording>& 
     if (in_folder.count(id) == 0) gone.push_back(id);
   }
   std::printf("%zu recordings kept as they were, %zu added\n", known.size(), added.size());
-  PrintIds("added", added);
-  PrintIds("kept, although they do not match the pattern", gone);
+  if (!added.empty()) std::printf("added: %s\n", ListOfNames(added).c_str());
+  if (!gone.empty()) {
+    std::printf("kept, although they do not match the pattern: %s\n", ListOfNames(gone).c_str());
+  }
   return manifest;
 }
 

@@ -1,16 +1,6 @@
 // apps: pushid-path: most probable paths under a model's process noise.
-#include <gflags/gflags.h>
-
-#include <cstdio>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
-
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
-#include "datasets/files/json_file.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/forecasts/most_probable_path.h"
 
@@ -57,39 +47,17 @@ Ends ReadEnds() {
   return ends;
 }
 
-Ends CheckedEnds() {
+int Run() {
   RequireModel();
-  Ends ends = ReadEnds();
+  const Ends ends = ReadEnds();
   CheckRange("frames", FLAGS_frames, 6, 100000);
   CheckRange("fps", FLAGS_fps, 10, 10000);
   CheckRange("mass", FLAGS_mass, 5, 500);
   CheckRange("rod", FLAGS_rod, 0.2, 2);
   OrFail(CheckOutputFiles({FLAGS_out, FLAGS_json_out}));
-  return ends;
-}
-
-nlohmann::ordered_json ActionJson(const ProbablePath& path) {
-  return {{"action", path.action()},
-          {"noise_action", path.noise_action},
-          {"divergence_action", path.divergence_action}};
-}
-
-// Writes the CSV of the path and the JSON.
-int Write(const ProbablePath& path, double dt, const nlohmann::ordered_json& json) {
-  if (!FLAGS_out.empty()) {
-    OrFail(WritePathCsv(FLAGS_out, path, dt));
-    std::printf("%d frames written to %s\n", path.states.num_frames(), FLAGS_out.c_str());
-  }
-  if (FLAGS_json_out.empty()) return kDone;
-  nlohmann::ordered_json whole = ResultHead("pushid-path/1");
-  whole.update(json);
-  OrFail(WriteJson(FLAGS_json_out, whole));
-  return kDone;
-}
-
-int Between(const Ends& ends, const IdentifiedModel& model) {
+  const IdentifiedModel model = LoadFlaggedModel();
   TextTable table = TextTable::OfNumbers({"end", "action", "of noise", "of divergence"});
-  nlohmann::ordered_json json;
+  nlohmann::ordered_json json = ResultHead("pushid-path/1");
   size_t best = 0;
   std::vector<ProbablePath> paths;
   for (size_t i = 0; i < ends.to.size(); ++i) {
@@ -97,9 +65,10 @@ int Between(const Ends& ends, const IdentifiedModel& model) {
                                             ends.from, ends.to[i], FLAGS_frames));
     table.Add({ends.names[i], Rounded(found.action(), 4), Rounded(found.noise_action, 4),
                Rounded(found.divergence_action, 4)});
-    nlohmann::ordered_json one = ActionJson(found);
-    one["end"] = ends.names[i];
-    json["paths"].push_back(one);
+    json["paths"].push_back({{"action", found.action()},
+                             {"noise_action", found.noise_action},
+                             {"divergence_action", found.divergence_action},
+                             {"end", ends.names[i]}});
     paths.push_back(std::move(found));
     if (paths[i].action() < paths[best].action()) best = i;
   }
@@ -111,12 +80,12 @@ int Between(const Ends& ends, const IdentifiedModel& model) {
   std::printf(
       "action: -log probability density of the path, up to a constant that depends on its "
       "frames\n");
-  return Write(paths[best], 1.0 / FLAGS_fps, json);
-}
-
-int Run() {
-  const Ends ends = CheckedEnds();
-  return Between(ends, LoadFlaggedModel());
+  if (!FLAGS_out.empty()) {
+    OrFail(WritePathCsv(FLAGS_out, paths[best], 1.0 / FLAGS_fps));
+    std::printf("%d frames written to %s\n", FLAGS_frames, FLAGS_out.c_str());
+  }
+  WriteIfNamed(FLAGS_json_out, json);
+  return kDone;
 }
 
 }  // namespace

@@ -1,24 +1,14 @@
 // apps: pushid-predict: what happens after a push, from the first frame and the push alone.
-#include <gflags/gflags.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <string>
-
 #include "apps/flags/command_line.h"
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/restoration_flags.h"
-#include "apps/support/app_support.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/model/model_rollout.h"
 #include "ident/parameters/presets.h"
-#include "ident/prediction/evaluation.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"
@@ -70,15 +60,6 @@ ChangedPushes ChangedPushesFromCommandLine() {
   return changed;
 }
 
-// The recording with the pushes of the flags, which were checked.
-PendulumRecording PushedRecording(const Recording& recorded) {
-  const PendulumRecording recording = MakePendulumRecording(recorded);
-  const ChangedPushes changed = ChangedPushesFromCommandLine();
-  const int frames = FLAGS_frames > 0 ? FLAGS_frames : recording.num_frames();
-  OrFail(CheckChangedPushes(changed, recording, frames));
-  return WithPushes(recording, changed);
-}
-
 RestorationFlags CheckedFlags() {
   RequireModel();
   Require("id", FLAGS_id, "name a recording of the manifest");
@@ -89,7 +70,6 @@ RestorationFlags CheckedFlags() {
   if (FLAGS_frames != 0 && (FLAGS_frames < 2 || FLAGS_frames > kMostFrames)) {
     throw Error{"--frames must be 0, or lie between 2 and " + std::to_string(kMostFrames)};
   }
-  ChangedPushesFromCommandLine();
   CheckExcludes({"push_scale", "push_again"}, "observed",
                 "--observed is for the recorded motion, and --{} for "
                 "another push than made it; leave one out");
@@ -113,9 +93,9 @@ std::vector<std::string> WriteScene(const BodyScene& scene, const BodyRecording&
 }
 
 // Restores bodies, writes what the flags name and prints, for a whole recording also how far they
-// are from the recorded ones; returns the exit code.
-int WriteBodies(const RestorationFlags& flags, const Recording& recorded,
-                const Prediction& prediction) {
+// are from the recorded ones.
+void WriteBodies(const RestorationFlags& flags, const Recording& recorded,
+                 const Prediction& prediction) {
   const std::unique_ptr<Restoration> restoration =
       LoadFlaggedRestoration(flags, static_cast<int>(recorded.people.size()));
   const BodyRecording recording = OrFail(MakeBodyRecording(recorded));
@@ -135,10 +115,9 @@ int WriteBodies(const RestorationFlags& flags, const Recording& recorded,
   if (IsThatOfTheRecording()) {
     std::printf("against the recording: %s\n", MetricsText(kBodyMetrics, score.value, 3).c_str());
   }
-  return kDone;
 }
 
-int WritePendulums(const PendulumRecording& recording, const Prediction& prediction) {
+void WritePendulums(const PendulumRecording& recording, const Prediction& prediction) {
   OrFail(WriteTrajectoryCsv(FLAGS_out, recording, prediction));
   std::printf("%s: %d frames predicted, written to %s\n", recording.id.c_str(),
               prediction.path.num_frames(), FLAGS_out.c_str());
@@ -147,34 +126,37 @@ int WritePendulums(const PendulumRecording& recording, const Prediction& predict
     std::printf("against the recording: %s\n",
                 MetricsText(TableMetrics(prediction.observed), score.value, 3).c_str());
   }
-  return kDone;
 }
 
 int Run() {
   const RestorationFlags restoration = CheckedFlags();
+  const ChangedPushes changed = ChangedPushesFromCommandLine();
   DrawnFutures();  // refuses what is out of range
   const IdentifiedModel model = LoadFlaggedModel();
   CheckDraws(model);
   const std::vector<Recording> recordings =
       LoadFlaggedRecordings({FLAGS_id}, restoration.given() || NeedsJoints(model.options));
-  const PendulumRecording recording = PushedRecording(recordings.front());
-
+  const PendulumRecording recorded = MakePendulumRecording(recordings.front());
+  OrFail(CheckChangedPushes(changed, recorded,
+                            FLAGS_frames > 0 ? FLAGS_frames : recorded.num_frames()));
+  const PendulumRecording recording = WithPushes(recorded, changed);
   WarnGrouped(InputWarnings(model, {recording}));
-  CheckObservedFlag({recording}, model);
+  CheckObservedFlag({recording}, &model);
   if (FLAGS_frames != 0 && FLAGS_frames <= ObservedFrames()) {
     return Fail("--frames=" + std::to_string(FLAGS_frames) + " leaves none to predict after " +
                 "--observed=" + std::to_string(ObservedFrames()) + "; it must be larger");
   }
-  const Prediction predicted =
+  const Prediction prediction =
       OrFail(PredictFrom(model, recording, ObservedFrames(), FLAGS_frames, ForecastUseFlag()));
-  const Prediction& prediction = predicted;
   if (!prediction.status.ok) {
     return Fail("recording " + recording.id + ": " + OutsideText(prediction.status), kFitFailed);
   }
-  const int code = restoration.given() ? WriteBodies(restoration, recordings.front(), prediction)
-                                       : WritePendulums(recording, prediction);
-  if (code != kDone) return code;
-  if (const ChangedPushes changed = ChangedPushesFromCommandLine(); changed.Any()) {
+  if (restoration.given()) {
+    WriteBodies(restoration, recordings.front(), prediction);
+  } else {
+    WritePendulums(recording, prediction);
+  }
+  if (changed.Any()) {
     std::printf("%s; no recorded motion to compare with\n",
                 ChangedPushesText(changed, recording).c_str());
   }

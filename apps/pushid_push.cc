@@ -1,25 +1,12 @@
 // apps: pushid-push: the push of a recording that has none, by inverse dynamics or from a sensor.
-#include <gflags/gflags.h>
-
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/overwrite_flag.h"
 #include "apps/flags/recording_flags.h"
-#include "datasets/files/atomic_file.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "datasets/formats/force_csv.h"
 #include "datasets/inspection/findings.h"
-#include "datasets/manifest/manifest.h"
 #include "datasets/manifest/recording.h"
 #include "ident/push/push_estimation.h"
 
@@ -59,7 +46,8 @@ using namespace pushid;
 // Flags that need more than a look.
 struct PushFlags {
   std::vector<std::string> ids;  // the recordings
-  SensorSetup sensor;            // what measured the push; without it, inverse dynamics
+  SensorSetup sensor;            // the sensors of the push; without one, inverse dynamics
+  PushWindow window = {-1, -1};  // of inverse dynamics; -1: to be detected
   std::optional<InitialVelocity> initial_velocity;
 };
 
@@ -86,23 +74,13 @@ std::vector<SensorChoice> SensorsFromFlags() {
 }
 
 void CheckSensors() {
-  CheckNeeds(kOfOneSensor, {"sensor"}, ": name the file of its forces");
-  CheckNeeds({"estimate_offset"}, {"sensor"});
+  CheckNeeds(kOfOneSensor, "sensor", ": name the file of its forces");
+  CheckNeeds({"estimate_offset"}, "sensor");
   for (const std::string& flag : kOfOneSensor) {
     if (!SensorsListed() || !Given(flag.c_str())) continue;
     throw Error{"--" + flag + " is given in the list, " + FLAGS_sensor + "; leave it out"};
   }
-  if (!(FLAGS_height >= 0.0 && FLAGS_height <= 2.0)) {
-    throw Error{"--height must be a fraction of the rod between 0 and 2"};
-  }
-}
-
-SensorSetup SensorsFromCommandLine() {
-  CheckSensors();
-  SensorSetup setup;
-  if (!FLAGS_sensor.empty()) setup.sensors = SensorsFromFlags();
-  setup.estimate_offset = FLAGS_estimate_offset;
-  return setup;
+  CheckRange("height", FLAGS_height, 0, 2);
 }
 
 constexpr char kPlace[] = "{id}";  // in --out and --sensor
@@ -115,25 +93,6 @@ std::string WithId(std::string path, const std::string& id) {
 bool HasPlace(const std::string& path) { return path.find(kPlace) != std::string::npos; }
 
 std::string OutOf(const std::string& id) { return WithId(FLAGS_out, id); }
-
-// A flag of the other method would be taken and have no effect.
-void CheckInverseDynamics() {
-  for (const char* flag : {"frames", "initial_velocity"}) {
-    if (!FLAGS_sensor.empty() && Given(flag)) {
-      throw Error{std::string("--") + flag + " applies to inverse dynamics, not to --sensor"};
-    }
-  }
-}
-
-// --frames as a window; -1: to be detected.
-PushWindow FlaggedWindow() {
-  PushWindow window = {-1, -1};
-  if (FLAGS_frames.empty()) return window;
-  char rest = 0;
-  const int read = std::sscanf(FLAGS_frames.c_str(), "%d:%d%c", &window.start, &window.end, &rest);
-  if (read == 2 && window.start >= 0 && window.end >= 0) return window;
-  throw Error{"--frames is '" + FLAGS_frames + "'; write first:end, counted from 0, as in 25:40"};
-}
 
 // Inputs and outputs of one recording, or of several.
 void CheckRecordings(const PushFlags& flags) {
@@ -165,30 +124,37 @@ PushFlags PushFlagsFromCommandLine() {
   PushFlags flags;
   flags.ids = FLAGS_id.empty() ? SelectedIds() : std::vector{FLAGS_id};
   Require("out", FLAGS_out, "name the CSV file to write");
-  CheckInverseDynamics();
-  FlaggedWindow();
+  for (const char* flag : {"frames", "initial_velocity"}) {
+    if (FLAGS_sensor.empty() || !Given(flag)) continue;
+    throw Error{std::string("--") + flag + " applies to inverse dynamics, not to --sensor"};
+  }
+  PushWindow& window = flags.window;
+  char rest = 0;
+  if (!FLAGS_frames.empty() &&
+      (std::sscanf(FLAGS_frames.c_str(), "%d:%d%c", &window.start, &window.end, &rest) != 2 ||
+       window.start < 0 || window.end < 0)) {
+    throw Error{"--frames is '" + FLAGS_frames + "'; write first:end, counted from 0, as in 25:40"};
+  }
   if (Given("resample_fps")) {
     throw Error{
         "a push has a row for each of the recording's own frames; leave --resample_fps out"};
   }
-  flags.sensor = SensorsFromCommandLine();
+  CheckSensors();
+  if (!FLAGS_sensor.empty()) flags.sensor.sensors = SensorsFromFlags();
+  flags.sensor.estimate_offset = FLAGS_estimate_offset;
   OrFail(
       ParseInitialVelocity("--initial_velocity", FLAGS_initial_velocity, &flags.initial_velocity));
   CheckRecordings(flags);
   return flags;
 }
 
-// A push by a sensor or by inverse dynamics.
+// A recording's push by a sensor or by inverse dynamics.
 struct MadePush {
+  std::string id, file;  // of the recording, and to write
   Push push;
   PushKind kind;
   std::string how;
   double start_speed = 0.0;  // m/s; inverse dynamics only
-};
-
-struct RecordingsPush {
-  std::string id, file;
-  MadePush made;
 };
 
 // A file's path relative to the manifest's folder.
@@ -205,11 +171,11 @@ MadePush FromSensor(const PushFlags& flags, const Recording& recorded,
   SensorSetup setup = flags.sensor;
   for (SensorChoice& sensor : setup.sensors) sensor.file = WithId(sensor.file, recorded.id);
   for (const SensorChoice& sensor : setup.sensors) {
-    OrFail(OutputFiles().CheckNotRead("--sensor", sensor.file));
+    OrFail(CheckNotRead("--sensor", sensor.file));
   }
   const SensorPush made = OrFail(PushFromSensors(setup, recorded, recording, FLAGS_person));
   for (const std::string& warning : made.warnings) LOG(WARNING) << warning;
-  return MadePush{made.push, PushKind::kExternal, made.how};
+  return {recorded.id, OutOf(recorded.id), made.push, PushKind::kExternal, made.how};
 }
 
 MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& recording) {
@@ -219,7 +185,7 @@ MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& reco
     throw Error{"recording " + recording.id + " has fewer than " + std::to_string(kSmoothing) +
                 " frames, over which a push is smoothed"};
   }
-  const PushWindow window = OrFail(PushWindowFrom(FlaggedWindow(), recording, options));
+  const PushWindow window = OrFail(PushWindowFrom(flags.window, recording, options));
   const EstimatedPush push = OrFail(EstimatePush(recording, window, options));
   for (int t = window.start; t < window.end; ++t) {
     if (recording.Weight(FLAGS_person, t) > 0.0) continue;
@@ -227,30 +193,32 @@ MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& reco
                  << " of the push: the force there is computed from interpolated positions";
     break;
   }
-  return MadePush{push.push, push.kind,
-                  "by inverse dynamics, smoothed over " + std::to_string(kSmoothing) + " frames",
-                  push.start_speed};
+  return {recording.id,
+          OutOf(recording.id),
+          push.push,
+          push.kind,
+          "by inverse dynamics, smoothed over " + std::to_string(kSmoothing) + " frames",
+          push.start_speed};
 }
 
-void WarnOfFirstRow(const std::string& id, const MadePush& made) {
+void WarnOfFirstRow(const MadePush& made) {
   if (!FirstRowStandsOut(made.push.force)) return;
   const std::string force = Rounded(made.push.force[0].head<2>().norm(), 3);
-  LOG(WARNING) << "recording " << id << ": the first row, " << force
+  LOG(WARNING) << "recording " << made.id << ": the first row, " << force
                << " N, stands out: the person already moves when the window begins; begin earlier "
                   "(--frames), or set --initial_velocity=estimated"
                << (made.push.start_frame == 0 ? " in the manifest" : "");
 }
 
-void PrintPush(const RecordingsPush& of, double dt) {
-  const MadePush& made = of.made;
+void PrintPush(const MadePush& made, double dt) {
   Vector4<double> impulse = Vector4<double>::Zero();
   double peak = 0.0;
   for (const Eigen::Vector4d& row : made.push.force) {
     impulse += dt * row;
     peak = std::max(peak, row.head<2>().norm());
   }
-  std::printf("%s: push on person %d, %d rows from frame %d, %s\n", of.id.c_str(), made.push.person,
-              made.push.EndFrame() - made.push.start_frame, made.push.start_frame,
+  std::printf("%s: push on person %d, %d rows from frame %d, %s\n", made.id.c_str(),
+              made.push.person, made.push.EndFrame() - made.push.start_frame, made.push.start_frame,
               made.how.c_str());
   if (made.start_speed > 0.0) {
     std::printf("the cart moves at %s m/s at its start\n", Rounded(made.start_speed, 3).c_str());
@@ -262,25 +230,25 @@ void PrintPush(const RecordingsPush& of, double dt) {
               towards(impulse[1], "to the left", "to the right").c_str(), Rounded(peak, 3).c_str());
   if (std::fabs(impulse[1]) > std::fabs(impulse[0])) {
     LOG(WARNING)
-        << "recording " << of.id
+        << "recording " << made.id
         << ": the push is sideways rather than forwards; check `up` and `forward` in the manifest";
   }
-  std::printf("written to %s\n", of.file.c_str());
+  std::printf("written to %s\n", made.file.c_str());
 }
 
-void PrintEntry(const RecordingsPush& of) {
+void PrintEntry(const MadePush& of) {
   std::printf(
       "to use it, add these lines to the recording's entry of the manifest, in place of any "
       "push_csv (--update does this):\n");
-  std::printf("  \"push_kind\": \"%s\",\n", NameOf(of.made.kind).c_str());
+  std::printf("  \"push_kind\": \"%s\",\n", NameOf(of.kind).c_str());
   std::printf("  \"pushes\": [{\"person\": %d, \"csv\": %s, \"start_frame\": %d}]\n",
-              of.made.push.person, nlohmann::json(PathFromManifest(of.file)).dump().c_str(),
-              of.made.push.start_frame);
+              of.push.person, nlohmann::json(PathFromManifest(of.file)).dump().c_str(),
+              of.push.start_frame);
 }
 
 // Replaces the entry's push on this person.
-void SetPush(const RecordingsPush& of, bool overwrite, ManifestRecording* entry) {
-  const int person = of.made.push.person;
+void SetPush(const MadePush& of, ManifestRecording* entry) {
+  const int person = of.push.person;
   std::string there = entry->pushed_person == person ? entry->push_csv : "";
   std::vector<ManifestPush> others;
   for (const ManifestPush& push : entry->pushes) {
@@ -290,55 +258,48 @@ void SetPush(const RecordingsPush& of, bool overwrite, ManifestRecording* entry)
   const auto where = [&](const std::string& what) {
     return Error{"recording " + of.id + " " + what, entry->manifest, entry->line};
   };
-  if (!there.empty() && !overwrite) {
+  if (!there.empty() && !FLAGS_overwrite) {
     throw where("has a push on person " + std::to_string(person) + " already, " + there +
                 "; --overwrite replaces it");
   }
   const bool others_stay = !others.empty() || (there.empty() && !entry->push_csv.empty());
-  if (others_stay && entry->push_kind != of.made.kind) {
+  if (others_stay && entry->push_kind != of.kind) {
     throw where("has pushes on other people of the kind " + NameOf(entry->push_kind) +
-                ", and this one is " + NameOf(of.made.kind) + "; an entry can have only one kind");
+                ", and this one is " + NameOf(of.kind) + "; an entry can have only one kind");
   }
   if (entry->pushed_person == person) entry->push_csv.clear();
   entry->pushes = std::move(others);
-  entry->pushes.push_back({person, PathFromManifest(of.file), of.made.push.start_frame});
-  entry->push_kind = of.made.kind;
-}
-
-Manifest WithPushes(const std::vector<RecordingsPush>& pushes, bool overwrite) {
-  Manifest manifest = OrFail(FlaggedManifest());
-  for (ManifestRecording& entry : manifest.recordings) {
-    for (const RecordingsPush& push : pushes) {
-      if (push.id != entry.id) continue;
-      SetPush(push, overwrite, &entry);
-    }
-  }
-  return manifest;
+  entry->pushes.push_back({person, PathFromManifest(of.file), of.push.start_frame});
+  entry->push_kind = of.kind;
 }
 
 int Run() {
   const PushFlags flags = PushFlagsFromCommandLine();
   const std::vector<Recording> recordings = LoadFlaggedRecordings(flags.ids);
-  std::vector<RecordingsPush> pushes;
+  std::vector<MadePush> pushes;
   std::vector<Finding> findings;
   for (const Recording& recorded : recordings) {
     const PendulumRecording recording = MakePendulumRecording(recorded);
     const MadePush made = flags.sensor.sensors.empty() ? ByInverseDynamics(flags, recording)
                                                        : FromSensor(flags, recorded, recording);
-    WarnOfFirstRow(recorded.id, made);
+    WarnOfFirstRow(made);
     Recording pushed = recorded;
     pushed.pushes = {made.push};
     pushed.push_kind = made.kind;
     for (Finding& finding : FindingsOf(pushed)) findings.push_back(std::move(finding));
-    pushes.push_back({recorded.id, OutOf(recorded.id), made});
+    pushes.push_back(made);
   }
   for (const std::string& warning : FindingTexts(FitFindings(std::move(findings))))
     LOG(WARNING) << warning;
   // All checks come before the first file is written.
-  Manifest manifest;
-  if (FLAGS_update) manifest = WithPushes(pushes, FLAGS_overwrite);
+  Manifest manifest = OrFail(FlaggedManifest());
+  for (ManifestRecording& entry : manifest.recordings) {
+    for (const MadePush& push : pushes) {
+      if (FLAGS_update && push.id == entry.id) SetPush(push, &entry);
+    }
+  }
   for (size_t i = 0; i < pushes.size(); ++i) {
-    OrFail(WritePushCsv(pushes[i].file, pushes[i].made.push.force));
+    OrFail(WritePushCsv(pushes[i].file, pushes[i].push.force));
     PrintPush(pushes[i], 1.0 / recordings[i].fps);
     if (!FLAGS_update) PrintEntry(pushes[i]);
   }

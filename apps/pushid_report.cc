@@ -1,15 +1,7 @@
 // apps: pushid-report: an identified model in words and tables, and as a page with pictures.
-#include <gflags/gflags.h>
-
-#include <cstdio>
-#include <filesystem>
-#include <string>
-
 #include "apps/flags/command_line.h"
 #include "apps/flags/overwrite_flag.h"
 #include "apps/flags/recording_flags.h"
-#include "datasets/files/atomic_file.h"
-#include "datasets/files/error.h"
 #include "ident/model/model_json.h"
 #include "ident/report/document.h"
 #include "ident/report/page/build_report.h"
@@ -32,11 +24,9 @@ using namespace pushid;
 
 namespace fs = std::filesystem;
 
-bool FiguresAsked() { return !FLAGS_figures_out.empty(); }
-
 // Refuses, before anything is computed, a folder with other files in it.
 void CheckFigureFlags() {
-  if (!FiguresAsked()) return;
+  if (FLAGS_figures_out.empty()) return;
   std::error_code ignored;
   if (!fs::exists(FLAGS_figures_out, ignored)) {
     return OrFail(AtomicFolder().Open(FLAGS_figures_out));
@@ -62,20 +52,15 @@ void WriteFigures(const Report& report) {
   LOG(INFO) << "figures and tables written to " << FLAGS_figures_out;
 }
 
-// The recordings to draw: those of the flags, or those that were fitted.
-std::vector<Recording> RecordingsOf(const FitResult& fit) {
-  if (FLAGS_recordings.empty()) return {};
-  return LoadFittedRecordings(fit, true);
-}
-
 int WriteWhole(const FittedModel& model) {
-  const std::vector<Recording> recordings = RecordingsOf(model.fit);
+  std::vector<Recording> recordings;  // to draw
+  if (!FLAGS_recordings.empty()) recordings = LoadFittedRecordings(model.fit, true);
   ProgressLine line;
   const BuildReportOptions options{FLAGS_num_threads, line.OfJobs("recording")};
   const Report report = BuildReport(model, recordings, options);
   line.Finish();
   if (FLAGS_details) std::printf("%s", ToText(report).c_str());
-  if (FiguresAsked()) WriteFigures(report);
+  if (!FLAGS_figures_out.empty()) WriteFigures(report);
   if (FLAGS_html_out.empty()) return kDone;
   OrFail(WriteFileAtomically(FLAGS_html_out, ToPage(report)));
   LOG(INFO) << "report written to " << FLAGS_html_out;
@@ -96,7 +81,9 @@ int Run() {
     std::printf("%s", TruthTable(model.fit, truth).c_str());
     return kDone;
   }
-  if (FLAGS_details || !FLAGS_html_out.empty() || FiguresAsked()) return WriteWhole(model);
+  if (FLAGS_details || !FLAGS_html_out.empty() || !FLAGS_figures_out.empty()) {
+    return WriteWhole(model);
+  }
   std::printf("%s", ScreenOf(model).ToString().c_str());
   return kDone;
 }

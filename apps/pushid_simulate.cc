@@ -1,15 +1,7 @@
 // apps: pushid-simulate: synthetic recordings of people with known parameters.
-#include <gflags/gflags.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <filesystem>
-
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
 #include "apps/flags/overwrite_flag.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "datasets/loading/laboratory_record.h"
 #include "datasets/manifest/recording.h"
 #include "datasets/synthetic/laboratory.h"
@@ -70,17 +62,6 @@ namespace {
 
 using namespace pushid;
 
-// The library trusts its caller.
-void CheckRecordingNumbers() {
-  CheckRange("people", FLAGS_people, 1, 10000);
-  CheckRange("recordings_per_person", FLAGS_recordings_per_person, 1, 10000);
-  CheckRange("group_size", FLAGS_group_size, 1, std::min(FLAGS_people, 100));
-  CheckRange("frames", FLAGS_frames, 3, 100000);
-  CheckRange("fps", FLAGS_fps, 10, 10000);
-  CheckRange("noise", FLAGS_noise, 0, 0.1);
-  CheckRange("subject_spread", FLAGS_subject_spread, 0, 2);
-}
-
 // Sets the ground of --ground; a file is sampled at the recordings' frames.
 void SetGround(SyntheticOptions* study) {
   const std::optional<GroundKind> kind = FromName<GroundKind>(FLAGS_ground);
@@ -106,10 +87,17 @@ void SetGround(SyntheticOptions* study) {
 SyntheticOptions StudyFromCommandLine() {
   Require("out", FLAGS_out, "name the folder to write");
   OrFail(CheckOutputFolder("out", FLAGS_out));
-  CheckRecordingNumbers();
   CheckExcludes({"stance", "delay", "truth_noise"}, "model",
                 "--model sets the parameters of the people; leave --{} out");
   SyntheticOptions study;
+  TakeInRange("people", FLAGS_people, 1, 10000, &study.subjects);
+  TakeInRange("recordings_per_person", FLAGS_recordings_per_person, 1, 10000,
+              &study.recordings_per_subject);
+  TakeInRange("group_size", FLAGS_group_size, 1, std::min(FLAGS_people, 100), &study.people_in_row);
+  TakeInRange("frames", FLAGS_frames, 3, 100000, &study.frames);
+  TakeInRange("fps", FLAGS_fps, 10, 10000, &study.fps);
+  TakeInRange("noise", FLAGS_noise, 0, 0.1, &study.joint_noise_m);
+  TakeInRange("subject_spread", FLAGS_subject_spread, 0, 2, &study.subject_spread);
   study.pushes = FLAGS_push_kind != "none";
   const std::optional<PushKind> kind =
       study.pushes ? FromName<PushKind>(FLAGS_push_kind) : PushKind::kExternal;
@@ -120,14 +108,7 @@ SyntheticOptions StudyFromCommandLine() {
   OrFail(ParseName("--stance", FLAGS_stance, &study.model.stance));
   OrFail(ParseName("--delay", FLAGS_delay, &study.model.delay));
   OrFail(ParseName("--truth_noise", FLAGS_truth_noise, &study.model.process_noise));
-  study.subjects = FLAGS_people;
-  study.people_in_row = FLAGS_group_size;
-  study.recordings_per_subject = FLAGS_recordings_per_person;
-  study.frames = FLAGS_frames;
-  study.fps = FLAGS_fps;
-  study.joint_noise_m = FLAGS_noise;
   study.push_kind = *kind;
-  study.subject_spread = FLAGS_subject_spread;
   study.seed = FLAGS_seed;
   study.plates = FLAGS_plates;
   SetGround(&study);
@@ -164,6 +145,8 @@ void CheckNothingBut(const std::vector<std::string>& allowed, int count) {
   CheckRange("frames", FLAGS_frames, 3, 100000);
 }
 
+std::string ManifestFile() { return (std::filesystem::path(FLAGS_out) / "manifest.json").string(); }
+
 int WriteTurns() {
   SyntheticTurnsOptions options;
   options.recordings = FLAGS_turns;
@@ -172,7 +155,7 @@ int WriteTurns() {
   CheckNothingBut({"turns", "frames", "seed", "out", "overwrite"}, FLAGS_turns);
   OrFail(WriteSyntheticTurns(FLAGS_out, options));
   std::printf("%d recordings of three people who talk in turns: %s\n", options.recordings,
-              (std::filesystem::path(FLAGS_out) / "manifest.json").c_str());
+              ManifestFile().c_str());
   return kDone;
 }
 
@@ -194,8 +177,7 @@ int WriteOfLaboratory() {
   CheckNothingBut({"laboratory", "seed", "out", "overwrite"}, FLAGS_laboratory);
   OrFail(WriteLaboratoryStudy(FLAGS_out, options));
   std::printf("%d people, %d pulls each that they withstand and %d after which they step: %s\n",
-              options.people, options.standing, options.stepping,
-              (std::filesystem::path(FLAGS_out) / "manifest.json").c_str());
+              options.people, options.standing, options.stepping, ManifestFile().c_str());
   return kDone;
 }
 
@@ -223,8 +205,7 @@ int Run() {
       study.people_in_row > 1 ? " in rows of " + std::to_string(study.people_in_row) : "";
   std::printf("%zu recordings of %d people%s, joint noise %s mm: %s lists the BVH and push files\n",
               made.size(), study.subjects, groups.c_str(),
-              Rounded(1000.0 * study.joint_noise_m, 3).c_str(),
-              (std::filesystem::path(FLAGS_out) / "manifest.json").c_str());
+              Rounded(1000.0 * study.joint_noise_m, 3).c_str(), ManifestFile().c_str());
   return kDone;
 }
 

@@ -1,21 +1,7 @@
 // apps: pushid-train-generator: learned generators of motion.
-#include <gflags/gflags.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <filesystem>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-
 #include "apps/flags/command_line.h"
 #include "apps/flags/published_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/support/app_support.h"
-#include "datasets/files/atomic_file.h"
-#include "datasets/files/json_file.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/model/model_json.h"
 #include "ident/problem/folds.h"
@@ -27,7 +13,7 @@ namespace {
 
 using namespace pushid;
 
-// What follows from several flags.
+// Options that follow from several flags.
 struct TrainGeneratorFlags {
   GeneratorTrainingOptions options;
   bool hold_out = true;  // validation clips, or a share of the recordings, show how it goes
@@ -38,15 +24,14 @@ struct TrainGeneratorFlags {
 };
 
 const TrainGeneratorFlags kFlags;
-const pushid::GeneratorTrainingOptions kOptions;
-std::string KindHelp() {
-  std::string kinds;
-  for (const pushid::GeneratorKindRow& row : pushid::kGeneratorKinds) {
-    kinds += (kinds.empty() ? "" : " or ") + std::string(row.name) + " (" + row.what + ")";
+const GeneratorTrainingOptions kOptions;
+const std::string kKind = [] {
+  std::vector<std::string> kinds;
+  for (const GeneratorKindRow& row : kGeneratorKinds) {
+    kinds.push_back(std::string(row.name) + " (" + row.what + ")");
   }
-  return "kind of generator: " + kinds;
-}
-const std::string kKind = KindHelp();
+  return "kind of generator: " + Joined(kinds, " or ");
+}();
 }  // namespace
 
 DEFINE_string(kind, pushid::NameOf(kOptions.kind), kKind.c_str());
@@ -265,11 +250,10 @@ int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecord
       [&](const std::string& step, double done) { line.Show(step, done); }));
   line.Finish();
   std::printf("%s", BodyText(validation.evaluation).c_str());
-  if (FLAGS_json_out.empty()) return kDone;
   Json json = ResultHead(kScoresSchema);
   AddBodyJson(validation.evaluation, &json);
   json["run"] = {{"training_seconds", validation.training_seconds}};
-  OrFail(WriteJson(FLAGS_json_out, json));
+  WriteIfNamed(FLAGS_json_out, json);
   return kDone;
 }
 
@@ -279,7 +263,7 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
   flags.options.configuration = Json{Version(), EffectiveFlags()}.dump();
   flags.options.checkpoint = Inside(FLAGS_out, "checkpoint.bin");
   OrFail(CheckWritable(flags.options.checkpoint));
-  SayWhenInterrupted(KeptCheckpoints(FLAGS_out));
+  SayWhenTrainingInterrupted(FLAGS_out);
   TrainingLine line;
   TrainedGenerator trained =
       OrFail(TrainGenerator(samples, flags.options, [&](const TrainingPoint& point, double done) {

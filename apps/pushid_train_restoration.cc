@@ -1,21 +1,8 @@
 // apps: pushid-train-restoration: networks that turn pendulums into bodies.
-#include <gflags/gflags.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <filesystem>
-#include <nlohmann/json.hpp>
-#include <string>
-
 #include "apps/flags/command_line.h"
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/postprocess_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/support/app_support.h"
-#include "datasets/files/atomic_file.h"
-#include "datasets/files/json_file.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/model/model_json.h"
@@ -27,15 +14,13 @@ namespace {
 
 using namespace pushid;
 
-std::string KindHelp() {
-  std::string kinds;
-  for (const pushid::RestorationKindRow& row : pushid::kRestorationKinds) {
-    if (!row.trained) continue;
-    kinds += (kinds.empty() ? "" : ", ") + std::string(row.name) + " (" + row.what + ")";
+const std::string kKind = [] {
+  std::vector<std::string> kinds;
+  for (const RestorationKindRow& row : kRestorationKinds) {
+    if (row.trained) kinds.push_back(std::string(row.name) + " (" + row.what + ")");
   }
-  return "kind of restoration: " + kinds;
-}
-const std::string kKind = KindHelp();
+  return "kind of restoration: " + Joined(kinds);
+}();
 
 }  // namespace
 
@@ -74,17 +59,6 @@ DEFINE_int32(num_threads, pushid::RestorationTrainingOptions{}.num_threads,
 
 namespace {
 
-// Flags of one kind alone, which must be at their defaults with others.
-struct FlagOfKind {
-  const char* flag;
-  const char* given;  // as the command line has it
-  RestorationKind kind;
-};
-constexpr FlagOfKind kFlagsOfKinds[] = {
-    {"halves", "--nohalves", RestorationKind::kCvae},
-    {"training", "--training", RestorationKind::kCvae},
-};
-
 bool AtDefault(const char* flag) {
   return gflags::GetCommandLineFlagInfoOrDie(flag).current_value ==
          gflags::GetCommandLineFlagInfoOrDie(flag).default_value;
@@ -92,13 +66,13 @@ bool AtDefault(const char* flag) {
 
 // Throws where flags do not go with the kind.
 void CheckKind(RestorationKind kind, RestorationView view) {
-  const RestorationKindRow& row = RowOf(kind);
-  if (view == RestorationView::kNeighbours && !row.sees_neighbours) {
+  if (view == RestorationView::kNeighbours && !RowOf(kind).sees_neighbours) {
     throw Error{"--sees=neighbours needs --kind=window"};
   }
-  for (const FlagOfKind& own : kFlagsOfKinds) {
-    if (kind == own.kind || AtDefault(own.flag)) continue;
-    throw Error{std::string(own.given) + " needs --kind=" + NameOf(own.kind)};
+  for (const auto& [flag, given] :
+       {std::pair("halves", "--nohalves"), std::pair("training", "--training")}) {
+    if (kind == RestorationKind::kCvae || AtDefault(flag)) continue;
+    throw Error{std::string(given) + " needs --kind=" + NameOf(RestorationKind::kCvae)};
   }
   if (AtDefault("coordinates")) return;
   if (kind != RestorationKind::kCvae || view == RestorationView::kPose) {
@@ -107,14 +81,21 @@ void CheckKind(RestorationKind kind, RestorationView view) {
   }
 }
 
-// Reads all flags but the model's.
-void ReadOptions(RestorationRunOptions* options) {
+FoldScheme Scheme() {
+  FoldScheme scheme;
+  OrFail(ParseName("--scheme", FLAGS_scheme, &scheme));
+  return scheme;
+}
+
+// With the fit's options read from the model, unless flags are only checked.
+RestorationRunOptions OptionsFromCommandLine() {
+  RestorationRunOptions options;
   Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote");
   const auto kind = FromName<RestorationKind>(FLAGS_kind);
   if (!kind || !RowOf(*kind).trained) {
     throw Error{"--kind is '" + FLAGS_kind + "'; it must be " + TrainedRestorationKinds()};
   }
-  RestorationTrainingOptions& training = options->training;
+  RestorationTrainingOptions& training = options.training;
   training.kind = *kind;
   OrFail(ParseName("--coordinates", FLAGS_coordinates, &training.coordinates));
   OrFail(ParseName("--sees", FLAGS_sees, &training.view));
@@ -128,40 +109,22 @@ void ReadOptions(RestorationRunOptions* options) {
   if (Given("forecast")) {
     throw Error{"--forecast: restorations are scored on both forecasters together; leave it out"};
   }
-  options->observed = ObservedFrames();
-  if (options->observed > 0 && FLAGS_crossvalidate == 0) {
+  options.observed = ObservedFrames();
+  if (options.observed > 0 && FLAGS_crossvalidate == 0) {
     throw Error{"--observed needs --crossvalidate: training uses whole recordings"};
   }
   if (!(FLAGS_effort > 0.0 && FLAGS_effort <= 100.0)) {
     throw Error{"--effort must lie above 0 and not above 100"};
   }
-  if (FLAGS_num_threads < 1) throw Error{"--num_threads must be positive"};
+  CheckRange("num_threads", FLAGS_num_threads, 1, 1024);
   training.halves = FLAGS_halves;
   training.effort = FLAGS_effort;
   training.seed = FLAGS_seed;
   training.num_threads = FLAGS_num_threads;
-}
-
-// The pendulum's options as the model has them.
-void ReadModel(FitOptions* fit) {
-  const FittedModel model = OrFail(ReadFittedModel(FLAGS_model));
-  *fit = model.fit.options;
-  fit->num_threads = FLAGS_num_threads;
-}
-
-FoldScheme Scheme() {
-  FoldScheme scheme;
-  OrFail(ParseName("--scheme", FLAGS_scheme, &scheme));
-  return scheme;
-}
-
-// With the fit's options read from the model, unless flags are only checked.
-RestorationRunOptions OptionsFromCommandLine() {
-  RestorationRunOptions options;
-  ReadOptions(&options);
   options.postprocess = PostprocessFromCommandLine();
   if (FLAGS_check) return options;
-  ReadModel(&options.fit);
+  options.fit = OrFail(ReadFittedModel(FLAGS_model)).fit.options;
+  options.fit.num_threads = FLAGS_num_threads;
   Scheme();  // refuses other names
   if (FLAGS_crossvalidate == 0 && Given("scheme")) throw Error{"--scheme needs --crossvalidate"};
   OrFail(CheckOutputFiles({FLAGS_json_out}));
@@ -176,11 +139,10 @@ int CrossValidate(const std::vector<BodyRecording>& recordings,
                          [&](const std::string& step, double done) { line.Show(step, done); }));
   line.Finish();
   std::printf("%s", BodyText(validation.evaluation).c_str());
-  if (FLAGS_json_out.empty()) return kDone;
   nlohmann::ordered_json json = ResultHead(kScoresSchema);
   AddBodyJson(validation.evaluation, &json);
   json["run"] = {{"training_seconds", validation.training_seconds}};
-  OrFail(WriteJson(FLAGS_json_out, json));
+  WriteIfNamed(FLAGS_json_out, json);
   return kDone;
 }
 
@@ -214,7 +176,7 @@ int Train(const std::vector<BodyRecording>& recordings, RestorationRunOptions op
   OrFail(CheckWritable(options.training.checkpoint));
   const std::vector<int> all = Others({}, static_cast<int>(recordings.size()));
   TrainingLine line;
-  SayWhenInterrupted(KeptCheckpoints(FLAGS_out));
+  SayWhenTrainingInterrupted(FLAGS_out);
   const TrainedRestoration trained = OrFail(TrainFromRecordings(
       recordings, all, options,
       [&line](const std::string& step, double done) { line.Show(step, done); }));

@@ -1,27 +1,16 @@
 // apps: flags, help, and what every program does before and after its job.
 #include "apps/flags/command_line.h"
 
-#include <gflags/gflags.h>
 #ifdef __GLIBC__
 #include <malloc.h>
 #include <sys/mman.h>
 #endif
 
-#include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <exception>
 #include <list>
-#include <new>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
-#include "apps/support/app_support.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "ident/parameters/option_table.h"
 
 DEFINE_bool(quiet, false, "suppress progress on stderr");
@@ -75,41 +64,30 @@ bool HasEffect(const std::string& name) {
   return gflags::GetCommandLineFlagInfo(name.c_str(), &flag) && Changed(flag);
 }
 
-std::string WithDashes(const std::vector<std::string>& names, const std::string& between) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "--" : between + "--") + name;
-  return text;
-}
-
 // The headings of --help, in their order, and the files of flags below each.
 struct Heading {
   const char* title;
-  std::vector<const char*> files;
+  const char* files[2];
 };
-const std::vector<Heading>& Headings() {
-  static const std::vector<Heading> headings = {
-      {"recordings", {"recording_flags"}},
-      {"model", {"model_flags"}},
-      {"fit", {}},
-      {kRarelyChanged, {}},
-      {"settings", {}},  // what stands nowhere else: the program's own
-      {"prediction", {"observed_flags", "futures_flags"}},
-      {"bodies", {"restoration_flags", "postprocess_flags"}},
-      {"output", {"overwrite_flag"}},
-      {"general", {"command_line"}}};
-  return headings;
-}
+constexpr Heading kHeadings[] = {{"recordings", {"recording_flags"}},
+                                 {"model", {"model_flags"}},
+                                 {"fit", {}},
+                                 {kRarelyChanged, {}},
+                                 {"settings", {}},  // all others: the program's own
+                                 {"prediction", {"observed_flags", "futures_flags"}},
+                                 {"bodies", {"restoration_flags", "postprocess_flags"}},
+                                 {"output", {"overwrite_flag"}},
+                                 {"general", {"command_line"}}};
 
 std::string HeadingOf(const FlagInfo& flag) {
   if (IsOutputFlag(flag.name)) return "output";
   if (flag.name == "num_threads" || flag.name == "seed") return "general";
   const FitOptionRow* const row = FindFitOption(flag.name);
   if (row != nullptr && flag.filename.find("fit_option") != std::string::npos) return row->heading;
-  for (const Heading& heading : Headings()) {
-    for (const char* file : heading.files) {
-      if (flag.filename.find(std::string("/") + file + ".") != std::string::npos) {
-        return heading.title;
-      }
+  const std::string file = std::filesystem::path(flag.filename).stem().string();
+  for (const Heading& heading : kHeadings) {
+    for (const char* of : heading.files) {
+      if (of != nullptr && file == of) return heading.title;
     }
   }
   return "settings";
@@ -169,7 +147,7 @@ std::string FlagHelp(bool all) {
     add("general", "--version", "print the version");
   }
   std::string text;
-  for (const Heading& heading : Headings()) {
+  for (const Heading& heading : kHeadings) {
     const auto found = below.find(heading.title);
     if (found != below.end()) text += "\n" + std::string(heading.title) + ":\n" + found->second;
   }
@@ -198,22 +176,10 @@ bool Asked(const char* flag) {
   return gflags::GetCommandLineOption(flag, &value) && value == "true";
 }
 
-// Checks a value by setting the flag, as gflags will again.
-MaybeError CheckValue(const gflags::CommandLineFlagInfo& flag, const std::string& value) {
-  if (flag.type == "string" ||
-      !gflags::SetCommandLineOption(flag.name.c_str(), value.c_str()).empty()) {
-    return std::nullopt;
-  }
-  return Error{"--" + flag.name + "=" + value + ": " + Quoted(value) + " is not " +
-               (flag.type == "double" ? "a number"
-                : flag.type == "bool" ? "true or false"
-                                      : "a whole number that fits")};
-}
-
 // "--check" or "--check=true"
 bool NamesFlag(const std::string& word) {
   if (word.rfind("--", 0) != 0) return false;
-  gflags::CommandLineFlagInfo flag;
+  FlagInfo flag;
   return gflags::GetCommandLineFlagInfo(word.substr(2, word.find('=') - 2).c_str(), &flag);
 }
 
@@ -227,30 +193,35 @@ MaybeError CheckFlags(int argc, char** argv) {
     const std::string word = argv[i];
     if (word == "--" || word.find("undefok") != std::string::npos) return std::nullopt;
     if (word.size() < 2 || word[0] != '-') continue;
-    const size_t equals = word.find('=');
-    const size_t first = word[1] == '-' ? 2 : 1;
-    const std::string name =
-        word.substr(first, equals == std::string::npos ? equals : equals - first);
-    gflags::CommandLineFlagInfo flag;
-    if (gflags::GetCommandLineFlagInfo(name.c_str(), &flag)) {
-      MaybeError error;
-      if (equals != std::string::npos) {
-        error = CheckValue(flag, word.substr(equals + 1));
-      } else if (flag.type != "bool") {  // its value is the next word
-        const std::string wanted = ": --" + name + "=... (" + flag.description + ")";
-        if (++i == argc) return Error{"--" + name + " has no value" + wanted};
-        if (NamesFlag(argv[i])) {
-          return Error{"--" + name + " has no value, as " + argv[i] + " is a flag" + wanted};
-        }
-        error = CheckValue(flag, argv[i]);
+    const size_t first = word[1] == '-' ? 2 : 1, equals = std::min(word.find('='), word.size());
+    const std::string name = word.substr(first, equals - first);
+    FlagInfo flag;
+    if (!gflags::GetCommandLineFlagInfo(name.c_str(), &flag)) {
+      const bool negated = name.rfind("no", 0) == 0 &&
+                           gflags::GetCommandLineFlagInfo(name.c_str() + 2, &flag) &&
+                           flag.type == "bool";
+      if (negated) continue;
+      return NoSuchFlag(name);
+    }
+    if (equals == word.size() && flag.type == "bool") continue;
+    std::string value = word.substr(std::min(equals + 1, word.size()));
+    if (equals == word.size()) {  // its value is the next word
+      const std::string wanted = ": --" + name + "=... (" + flag.description + ")";
+      if (++i == argc) return Error{"--" + name + " has no value" + wanted};
+      value = argv[i];
+      if (NamesFlag(value)) {
+        return Error{"--" + name + " has no value, as " + value + " is a flag" + wanted};
       }
-      if (error) return error;
+    }
+    // Setting the flag checks its value; gflags will set it again.
+    if (flag.type == "string" ||
+        !gflags::SetCommandLineOption(name.c_str(), value.c_str()).empty()) {
       continue;
     }
-    const bool negated = name.rfind("no", 0) == 0 &&
-                         gflags::GetCommandLineFlagInfo(name.c_str() + 2, &flag) &&
-                         flag.type == "bool";
-    if (!negated) return NoSuchFlag(name);
+    return Error{"--" + name + "=" + value + ": " + Quoted(value) + " is not " +
+                 (flag.type == "double" ? "a number"
+                  : flag.type == "bool" ? "true or false"
+                                        : "a whole number that fits")};
   }
   return std::nullopt;
 }
@@ -281,11 +252,11 @@ void PrepareHeap() {
 
 }  // namespace
 
-void CheckNeeds(const std::vector<std::string>& flags, const std::vector<std::string>& others,
+void CheckNeeds(const std::vector<std::string>& flags, const std::string& other,
                 const std::string& why) {
-  if (std::any_of(others.begin(), others.end(), HasEffect)) return;
+  if (HasEffect(other)) return;
   for (const std::string& name : flags) {
-    if (Asks(name)) throw Error{"--" + name + " needs " + WithDashes(others, " or ") + why};
+    if (Asks(name)) throw Error{"--" + name + " needs --" + other + why};
   }
 }
 
@@ -391,25 +362,21 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
 
 void JoinRepeated(const std::string& flag, char separator, int argc, char** argv) {
   // Every occurrence gets the whole text, so that it does not matter which one counts.
-  std::vector<char**> places;  // "--flag=value", or the word behind "--flag"
+  std::vector<char**> places;  // "--flag=value", or "--flag" and the word behind it
   std::string joined;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    const size_t dashes = word.rfind("--", 0) == 0 ? 2 : 1;
-    const bool next = word.substr(dashes) == flag && word[0] == '-' && i + 1 < argc;
-    if (!next && (word[0] != '-' || word.compare(dashes, flag.size() + 1, flag + "=") != 0)) {
-      continue;
+    for (const std::string& name : {"--" + flag, "-" + flag}) {
+      const bool next = word == name && i + 1 < argc;
+      if (!next && word.rfind(name + "=", 0) != 0) continue;
+      if (!places.empty()) joined += separator;
+      places.push_back(&argv[i]);
+      if (next) places.push_back(&argv[++i]);
+      joined += next ? argv[i] : word.substr(name.size() + 1);
     }
-    if (next) ++i;
-    places.push_back(&argv[i]);
-    if (places.size() > 1) joined += separator;
-    joined += next ? argv[i] : word.substr(dashes + flag.size() + 1);
   }
   static std::list<std::string> kept;  // argv only points
-  for (char** place : places) {
-    const bool next = **place != '-' || std::string(*place).find(flag + "=") == std::string::npos;
-    *place = kept.emplace_back(next ? joined : "--" + flag + "=" + joined).data();
-  }
+  for (char** place : places) *place = kept.emplace_back("--" + flag + "=" + joined).data();
 }
 
 }  // namespace pushid

@@ -1,14 +1,24 @@
 // apps: the command line of every program: help, version, common checks, what is given and what
-// goes with what.
+// goes with what. A program includes it before all else: it brings gflags and the files, names,
+// numbers and JSON that every program reads and writes.
 #pragma once
 
+#include <gflags/gflags.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
 #include <map>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/support/app_support.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/json_file.h"
+#include "datasets/files/names.h"
+#include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
 
 namespace pushid {
@@ -23,10 +33,10 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
 // alone. Called before RunApp.
 void JoinRepeated(const std::string& flag, char separator, int argc, char** argv);
 
-// Errors: one of `flags` is given and acts, and none of `others` does; `why` follows "--flag needs
-// --other or --another". A flag of others acts where its value is not its default. A switch that is
-// given as off asks for nothing.
-void CheckNeeds(const std::vector<std::string>& flags, const std::vector<std::string>& others,
+// Errors: one of `flags` is given and acts, and `other` does not; `why` follows "--flag needs
+// --other". `other` acts where its value is not its default. A switch that is given as off asks for
+// nothing.
+void CheckNeeds(const std::vector<std::string>& flags, const std::string& other,
                 const std::string& why = "");
 // Errors: one of `flags` acts, and `other` too; `why` is the whole sentence, in which {} stands for
 // the flag.
@@ -59,6 +69,11 @@ std::map<std::string, std::string> EffectiveFlags();
 
 // The beginning of a program's JSON: name of its format, version, effective flags.
 nlohmann::ordered_json ResultHead(const char* schema);
+
+// Writes the JSON of a result; nothing where no file is named.
+inline void WriteIfNamed(const std::string& file, const nlohmann::ordered_json& json) {
+  if (!file.empty()) OrFail(WriteJson(file, json));
+}
 
 // Names of flags that are not at their defaults.
 std::vector<std::string> ChangedFlags();

@@ -2,13 +2,9 @@
 // (ident/parameters/option_table.h) as gflags; shared by pushid-fit and pushid-crossvalidate.
 #pragma once
 
-#include <gflags/gflags.h>
-
-#include <cstdint>
 #include <list>
-#include <string>
 
-#include "apps/support/app_support.h"
+#include "apps/flags/command_line.h"
 #include "ident/fit/fit_setup.h"
 #include "ident/parameters/option_table.h"
 

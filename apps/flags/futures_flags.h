@@ -1,14 +1,7 @@
 // apps: --samples, by which programs draw futures from a model with process noise.
 #pragma once
 
-#include <gflags/gflags.h>
-
-#include <cstdint>
-#include <cstdio>
-
 #include "apps/flags/command_line.h"
-#include "datasets/loading/pendulum_recording.h"
-#include "ident/model/identified_model.h"
 #include "ident/prediction/futures.h"
 
 DEFINE_int32(

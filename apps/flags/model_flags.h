@@ -2,19 +2,8 @@
 // headers that it includes.
 #pragma once
 
-#include <gflags/gflags.h>
-
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "apps/flags/command_line.h"
-#include "apps/support/app_support.h"
 #include "apps/support/processes.h"
-#include "datasets/files/error.h"
-#include "ident/model/fitted_model.h"
-#include "ident/model/identified_model.h"
 #include "ident/model/model_json.h"
 
 DEFINE_string(model, "",
@@ -52,17 +41,22 @@ inline FittedModel ReadFlaggedModel() {
   return std::move(read).value();
 }
 
-// Throws without --model; `why` says what it must name, or what needs it.
-inline void RequireModel(const std::string& why = "give a file that pushid-fit --model_out wrote") {
-  Require("model", FLAGS_model, why);
+// Throws without --model.
+inline void RequireModel() {
+  Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote");
+}
+
+// The model of --model as it was fitted.
+inline IdentifiedModel LoadModelAsFitted() {
+  RequireModel();
+  IdentifiedModel model = ModelOf(ReadFlaggedModel().fit);
+  model.source = FLAGS_model;
+  return model;
 }
 
 // The model of --model with the values of --set.
 inline IdentifiedModel LoadFlaggedModel() {
-  RequireModel();
-  const FittedModel read = ReadFlaggedModel();
-  IdentifiedModel model = ModelOf(read.fit);
-  model.source = FLAGS_model;
+  IdentifiedModel model = LoadModelAsFitted();
   OrFail(SetValues(FLAGS_set, &model));
   return model;
 }
@@ -78,14 +72,9 @@ struct WhatIf {
 // The model of --model as it was fitted, and then with each --set; main joins them by ;
 // (JoinRepeated).
 inline std::vector<WhatIf> LoadWhatIfs() {
-  RequireModel();
-  const FittedModel read = ReadFlaggedModel();
-  IdentifiedModel fitted = ModelOf(read.fit);
-  fitted.source = ModelFile();
-  std::vector<WhatIf> what_ifs = {{"", fitted}};
-  std::stringstream sets(FLAGS_set);
-  for (std::string set; std::getline(sets, set, kBetweenSets);) {
-    WhatIf one{set, fitted};
+  std::vector<WhatIf> what_ifs = {{"", LoadModelAsFitted()}};
+  for (const std::string& set : SplitList(FLAGS_set, kBetweenSets)) {
+    WhatIf one{set, what_ifs.front().model};
     OrFail(SetValues(set, &one.model));
     what_ifs.push_back(std::move(one));
   }

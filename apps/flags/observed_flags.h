@@ -1,13 +1,7 @@
 // apps: --observed, of every program that predicts recordings.
 #pragma once
 
-#include <gflags/gflags.h>
-
-#include <vector>
-
 #include "apps/flags/command_line.h"
-#include "datasets/loading/pendulum_recording.h"
-#include "ident/model/identified_model.h"
 #include "ident/prediction/evaluation.h"
 
 DEFINE_int32(observed, 0,
@@ -20,36 +14,25 @@ DEFINE_string(forecast, pushid::NameOf(pushid::ForecastUse::kBoth),
 
 namespace pushid {
 
-// --forecast: who forecasts after observed frames.
 inline ForecastUse ForecastUseFlag() {
-  ForecastUse use = ForecastUse::kBoth;
-  ParseName("--forecast", FLAGS_forecast, &use);  // CheckObservedFlag refuses other names
+  ForecastUse use;
+  OrFail(ParseName("--forecast", FLAGS_forecast, &use));
   return use;
 }
 
 inline int ObservedFrames() { return Given("observed") ? FLAGS_observed : 0; }
 
-// Throw where --observed and --forecast do not go together, with these recordings, or with this
+// Throws where --observed and --forecast do not go together, with these recordings, or with this
 // model.
-inline void CheckObservedFlag(const std::vector<PendulumRecording>& recordings) {
-  if (!Given("observed")) return;
-  OrFail(CheckObserved(recordings, FLAGS_observed));
-}
-
-inline void CheckObservedFlag() {
-  ForecastUse use;
-  OrFail(ParseName("--forecast", FLAGS_forecast, &use));
+inline void CheckObservedFlag(const std::vector<PendulumRecording>& recordings = {},
+                              const IdentifiedModel* model = nullptr) {
+  ForecastUseFlag();  // refuses other names
   if (Given("forecast") && !Given("observed")) {
     throw Error{"--forecast needs --observed: it chooses who forecasts after observed frames"};
   }
-  CheckObservedFlag({});
-}
-
-inline void CheckObservedFlag(const std::vector<PendulumRecording>& recordings,
-                              const IdentifiedModel& model) {
   if (!Given("observed")) return;
-  OrFail(CheckLearnsFromFrames(model));
-  CheckObservedFlag(recordings);
+  if (model != nullptr) OrFail(CheckLearnsFromFrames(*model));
+  OrFail(CheckObserved(recordings, FLAGS_observed));
 }
 
 }  // namespace pushid

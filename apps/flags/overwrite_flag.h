@@ -1,12 +1,7 @@
 // apps: --overwrite, for programs whose outputs a person may have edited or cannot make again.
 #pragma once
 
-#include <gflags/gflags.h>
-
-#include <filesystem>
-#include <string>
-
-#include "datasets/files/json_file.h"
+#include "apps/flags/command_line.h"
 
 DEFINE_bool(overwrite, false, "replace existing recordings, manifests, pushes and figures");
 

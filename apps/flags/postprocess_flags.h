@@ -1,9 +1,7 @@
 // apps: --postprocess, corrections of restored bodies.
 #pragma once
 
-#include <gflags/gflags.h>
-
-#include "datasets/files/names.h"
+#include "apps/flags/command_line.h"
 #include "models/restoration/postprocess.h"
 
 DEFINE_string(postprocess, "fade,bones,feet",

@@ -1,11 +1,7 @@
 // apps: --published by name.
 #pragma once
 
-#include <gflags/gflags.h>
-
-#include <optional>
-
-#include "datasets/files/names.h"
+#include "apps/flags/command_line.h"
 #include "ident/generators/generator_files.h"
 
 DEFINE_string(

@@ -1,15 +1,9 @@
 // apps: loading what --recordings names.
 #include "apps/flags/recording_flags.h"
 
-#include <algorithm>
 #include <set>
-#include <utility>
 
-#include "apps/flags/command_line.h"
-#include "apps/support/app_support.h"
-#include "datasets/files/names.h"
 #include "datasets/inspection/findings.h"
-#include "datasets/manifest/manifest.h"
 
 const std::string kUnitHelp = "length unit of the files, " + pushid::AnyName<pushid::LengthUnit>() +
                               "; overrides the files and the manifest";
@@ -119,12 +113,11 @@ std::vector<Recording> LoadFlaggedRecordings(const std::vector<std::string>& ids
   if (warnings != nullptr) *warnings = found;
   if (!recordings.ok()) throw recordings.error();
   // Pushes may be written where they were read; a motion must not be overwritten.
-  const OutputFiles outputs;
   for (const ManifestRecording& entry : manifest.value().recordings) {
     std::vector<std::string> files = entry.motion;
     if (!entry.mapping.empty()) files.push_back(entry.mapping);
     for (const std::string& file : files) {
-      OrFail(outputs.CheckNotRead("recording " + entry.id, ResolvePath(entry.manifest, file)));
+      OrFail(CheckNotRead("recording " + entry.id, ResolvePath(entry.manifest, file)));
     }
   }
   return std::move(recordings).value();

@@ -1,12 +1,7 @@
 // apps: the flags by which every executable takes recordings.
 #pragma once
 
-#include <gflags/gflags.h>
-
-#include <map>
-#include <string>
-#include <vector>
-
+#include "apps/flags/command_line.h"
 #include "datasets/loading/load_recordings.h"
 #include "ident/model/fitted_model.h"
 

@@ -1,15 +1,10 @@
 // apps: the flags by which an executable takes a restoration.
 #pragma once
 
-#include <gflags/gflags.h>
-
 #include <memory>
-#include <string>
 
+#include "apps/flags/command_line.h"
 #include "apps/flags/postprocess_flags.h"
-#include "apps/support/app_support.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "ident/bodies/restoration_files.h"
 #include "models/restoration/restoration.h"
 
@@ -50,24 +45,18 @@ inline RestorationFlags RestorationFlagsFromCommandLine(const std::string& other
   return flags;
 }
 
-// Warns where a restoration that never saw a group is used for one.
-inline void WarnOfCrowd(const RestorationFlags& flags, int people) {
-  if (people < 2) return;
-  if (OrFail(LearnedAlone(flags.name))) {
-    LOG(WARNING)
-        << flags.name
-        << " was trained on people pushed alone; in groups its bodies stay on tiptoe when others "
-           "push them: train one with --more_settings=groups";
-  }
-}
-
 // people: the most in one recording. Warns where a restoration that never saw a group is used for
 // one.
 inline std::unique_ptr<Restoration> LoadFlaggedRestoration(const RestorationFlags& flags,
                                                            int people) {
   std::unique_ptr<Restoration> restoration = OrFail(LoadRestoration(flags.name));
   OrFail(ChooseLatent(flags.latent, restoration.get()));
-  WarnOfCrowd(flags, people);
+  if (people > 1 && OrFail(LearnedAlone(flags.name))) {
+    LOG(WARNING)
+        << flags.name
+        << " was trained on people pushed alone; in groups its bodies stay on tiptoe when others "
+           "push them: train one with --more_settings=groups";
+  }
   return restoration;
 }
 

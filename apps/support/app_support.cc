@@ -18,8 +18,6 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "datasets/manifest/manifest.h"
 #include "ident/model/model_json.h"
 
@@ -136,13 +134,10 @@ void SayWhenInterrupted(const std::string& what) {
   sigaction(SIGINT, &ending, nullptr);
 }
 
-std::string KeptCheckpoints(const std::string& folder) {
-  return "the last checkpoint is in " + folder + ", and the same command continues from there";
+void SayWhenTrainingInterrupted(const std::string& folder) {
+  SayWhenInterrupted("the last checkpoint is in " + folder +
+                     ", and the same command continues from there");
 }
-
-TrainingLine::TrainingLine() : made_(Now()) {}
-
-double TrainingLine::Seconds() const { return Now() - made_; }
 
 void TrainingLine::Show(const std::string& step, double done) {
   const std::string name = step.substr(0, step.rfind(' '));
@@ -246,13 +241,33 @@ bool Writes(const std::string& name, const std::string& help, const OutputKind& 
          (kind.help != nullptr && help.find(kind.help) != std::string::npos);
 }
 
+// An output's flag with its dashes, the file that it names, and the flag's help.
+struct NamedOutput {
+  std::string name, path, help;
+};
+// Flags are parsed once, so these are the same whenever they are asked for.
+const std::vector<NamedOutput>& Outputs() {
+  static const std::vector<NamedOutput> outputs = [] {
+    std::vector<gflags::CommandLineFlagInfo> flags;
+    gflags::GetAllFlags(&flags);
+    std::vector<NamedOutput> named;
+    for (const gflags::CommandLineFlagInfo& flag : flags) {
+      if (!IsOutputFlag(flag.name) || flag.current_value.empty()) continue;
+      named.push_back({"--" + flag.name, flag.current_value, flag.description});
+    }
+    return named;
+  }();
+  return outputs;
+}
+
 // Refuses, for instance, a page under the name of a picture.
-MaybeError CheckKind(const std::string& name, const std::string& path, const std::string& help) {
+MaybeError CheckKind(const NamedOutput& output) {
   for (const OutputKind& kind : kKinds) {
-    if (!Writes(name, help, kind) || EndsWith(path, kind.ending)) continue;
+    if (!Writes(output.name, output.help, kind) || EndsWith(output.path, kind.ending)) continue;
     for (const OutputKind& other : kKinds) {
-      if (!EndsWith(path, other.ending) || Writes(name, help, other)) continue;
-      return Error{name + " writes " + kind.ending + ", but " + path + " ends in " + other.ending};
+      if (!EndsWith(output.path, other.ending) || Writes(output.name, output.help, other)) continue;
+      return Error{output.name + " writes " + kind.ending + ", but " + output.path + " ends in " +
+                   other.ending};
     }
   }
   return std::nullopt;
@@ -275,17 +290,8 @@ MaybeError CheckEnding(const std::string& file) {
 
 }  // namespace
 
-OutputFiles::OutputFiles() {
-  std::vector<gflags::CommandLineFlagInfo> flags;
-  gflags::GetAllFlags(&flags);
-  for (const gflags::CommandLineFlagInfo& flag : flags) {
-    if (!IsOutputFlag(flag.name) || flag.current_value.empty()) continue;
-    files_.push_back({"--" + flag.name, flag.current_value, flag.description});
-  }
-}
-
-MaybeError OutputFiles::CheckNotRead(const std::string& reader, const std::string& path) const {
-  for (const NamedPath& output : files_) {
+MaybeError CheckNotRead(const std::string& reader, const std::string& path) {
+  for (const NamedOutput& output : Outputs()) {
     // pushid-check adds to the model that it reads.
     if (reader == "--model" && output.name == "--model_out") continue;
     if (Same(output.path, path)) return BothName(reader, output.name, path);
@@ -294,12 +300,11 @@ MaybeError OutputFiles::CheckNotRead(const std::string& reader, const std::strin
 }
 
 MaybeError CheckOutputs() {
-  const OutputFiles outputs;
-  const auto& files = outputs.files_;
-  for (size_t i = 0; i < files.size(); ++i) {
+  const std::vector<NamedOutput>& outputs = Outputs();
+  for (size_t i = 0; i < outputs.size(); ++i) {
     for (size_t k = 0; k < i; ++k) {
-      if (!Same(files[i].path, files[k].path)) continue;
-      return BothName(files[k].name, files[i].name, files[i].path);
+      if (!Same(outputs[i].path, outputs[k].path)) continue;
+      return BothName(outputs[k].name, outputs[i].name, outputs[i].path);
     }
   }
   for (const char* input : kInputs) {
@@ -309,11 +314,11 @@ MaybeError CheckOutputs() {
     // A formation may be a word instead of a file.
     if (flag.name == "formation" && !fs::is_regular_file(flag.current_value)) continue;
     for (const std::string& path : ManifestPaths(flag.current_value)) {
-      if (MaybeError error = outputs.CheckNotRead("--" + flag.name, path)) return error;
+      if (MaybeError error = CheckNotRead("--" + flag.name, path)) return error;
     }
   }
-  for (const auto& [name, path, help] : files) {
-    if (MaybeError error = CheckKind(name, path, help)) return error;
+  for (const NamedOutput& output : outputs) {
+    if (MaybeError error = CheckKind(output)) return error;
   }
   return std::nullopt;
 }

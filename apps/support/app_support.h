@@ -61,22 +61,21 @@ inline constexpr int kInterrupted = 130;  // as shells count SIGINT
 // how to start again; a second call replaces it.
 void SayWhenInterrupted(const std::string& what);
 
-// The message of a training into this folder that Ctrl-C stops.
-std::string KeptCheckpoints(const std::string& folder);
+// As above, for a training into this folder, whose checkpoint is kept.
+void SayWhenTrainingInterrupted(const std::string& folder);
 
 // Progress of a training: "window, epoch 12: 43 %, 12 s left", where the time left follows from the
 // share done so far. Steps differ in what stands before their last word.
 class TrainingLine {
  public:
-  TrainingLine();
   void Show(const std::string& step, double done);
   void Finish() { line_.Finish(); }
-  double Seconds() const;  // since it was made
+  double Seconds() const { return Now() - made_; }  // since it was made
 
  private:
   ProgressLine line_;
   std::string step_;
-  double made_, start_ = 0.0, done_at_start_ = 0.0;
+  double made_ = Now(), start_ = 0.0, done_at_start_ = 0.0;
 };
 
 struct FittedModel;  // ident/model/fitted_model.h
@@ -128,21 +127,8 @@ MaybeError CheckOutputFiles(std::initializer_list<std::string> files);
 // is done.
 MaybeError CheckOutputs();
 
-// The files that the output flags name.
-class OutputFiles {
- public:
-  OutputFiles();
-
-  // Checks an input that no flag names: `reader` is who reads it ("--sensor", "the command line").
-  MaybeError CheckNotRead(const std::string& reader, const std::string& path) const;
-
- private:
-  friend MaybeError CheckOutputs();
-  struct NamedPath {
-    std::string name, path;
-    std::string help;  // of the flag
-  };
-  std::vector<NamedPath> files_;
-};
+// Checks that no output flag names an input that no flag names: `reader` is who reads it
+// ("--sensor", "the command line").
+MaybeError CheckNotRead(const std::string& reader, const std::string& path);
 
 }  // namespace pushid

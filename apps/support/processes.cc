@@ -11,12 +11,10 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/names.h"
 
 namespace pushid {
 namespace {
@@ -67,25 +65,20 @@ Result<pid_t> StartChild(const ChildSpec& spec) {
   }
   Result<std::vector<std::string>> words = Shortened(spec);
   if (!words.ok()) return words.error();
-  const int flags = O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC;
-  const int out = open(spec.out.c_str(), flags, 0644);
-  if (out < 0) return Error{"cannot be written: " + std::string(std::strerror(errno)), spec.out};
-  const int err = open(spec.err.c_str(), flags, 0644);
-  if (err < 0) {
-    const std::string reason = std::strerror(errno);
-    close(out);
-    return Error{"cannot be written: " + reason, spec.err};
-  }
   std::vector<char*> argv;
   for (std::string& word : words.value()) argv.push_back(word.data());
   argv.push_back(nullptr);
+  const int flags = O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC;
+  const int out = open(spec.out.c_str(), flags, 0644), err = open(spec.err.c_str(), flags, 0644);
+  const bool opened = out >= 0 && err >= 0;
   const pid_t parent = getpid();
-  const pid_t child = fork();
+  const pid_t child = opened ? fork() : -1;
   if (child == 0) RunInChild(spec, argv.data(), parent, out, err);
-  const int reason = errno;
-  close(out);
-  close(err);
-  if (child < 0) return Error{"no process can be started: " + std::string(std::strerror(reason))};
+  const std::string reason = std::strerror(errno);
+  if (out >= 0) close(out);
+  if (err >= 0) close(err);
+  if (!opened) return Error{"cannot be written: " + reason, out < 0 ? spec.out : spec.err};
+  if (child < 0) return Error{"no process can be started: " + reason};
   setpgid(child, child);  // in both, so that it is done whichever comes first
   return child;
 }
@@ -96,31 +89,17 @@ std::string OwnFolder() {
   return failed ? "." : self.parent_path().string();
 }
 
-namespace {
-
-// A program's file beside this one or on the PATH; empty: there is none.
-std::string FindProgram(const std::string& name) {
-  const char* const path = std::getenv("PATH");
-  for (const std::string& folder :
-       SplitList(OwnFolder() + ":" + (path == nullptr ? "" : path), ':')) {
-    const std::string file = folder + "/" + name;
-    if (!folder.empty() && access(file.c_str(), X_OK) == 0) return file;
-  }
-  return "";
-}
-
-}  // namespace
-
 Error RunInstead(const std::string& name, const std::vector<std::string>& arguments) {
-  const std::string file = FindProgram(name);
-  if (file.empty()) {
-    return Error{name + " is neither beside this program nor on the PATH; install or build it"};
-  }
-  std::vector<char*> words = {const_cast<char*>(file.c_str())};
+  const std::string beside = OwnFolder() + "/" + name;
+  std::vector<char*> words = {const_cast<char*>(beside.c_str())};
   for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
-  execv(file.c_str(), words.data());
-  return Error{std::string("cannot be started: ") + std::strerror(errno), file};
+  execv(beside.c_str(), words.data());
+  if (errno == ENOENT) execvp(name.c_str(), words.data());
+  if (errno == ENOENT) {
+    return Error{name + " is neither beside this program nor on the PATH; install or build it"};
+  }
+  return Error{std::string("cannot be started: ") + std::strerror(errno), name};
 }
 
 std::string ShellText(const std::vector<std::string>& command) {
