@@ -1,18 +1,9 @@
 // apps: pushid-batch: many fits from one plan, each in a process of its own.
-#include <gflags/gflags.h>
-
-#include <cstdio>
-#include <filesystem>
 #include <map>
-#include <optional>
-#include <string>
 
 #include "apps/batch/batch.h"
 #include "apps/flags/command_line.h"
-#include "apps/support/app_support.h"
 #include "apps/support/processes.h"
-#include "datasets/files/error.h"
-#include "datasets/files/names.h"
 #include "datasets/manifest/manifest.h"
 #include "ident/figures/text_table.h"
 #include "ident/report/document.h"
@@ -35,37 +26,17 @@ namespace {
 
 using namespace pushid;
 
-// Run only every `shards`-th job, starting with number `shard`, from 1.
-int shard = 1, shards = 1;
-
-void ReadShard() {
-  if (FLAGS_shard.empty()) return;
-  char rest = 0;
-  const int read = std::sscanf(FLAGS_shard.c_str(), "%d/%d%c", &shard, &shards, &rest);
-  if (read == 2 && 1 <= shard && shard <= shards) return;
-  throw Error{"--shard is '" + FLAGS_shard + "'; write i/n with 1 <= i <= n, as in 2/4"};
-}
-
-void CheckFlags() {
-  Require("plan", FLAGS_plan, "name the TOML file of the batch");
-  ReadShard();
-  if (FLAGS_jobs < 1) throw Error{"--jobs must be at least 1"};
-}
-
 // The last line on stderr of a command that fails, without the program's name; empty when it
 // succeeds.
 std::string ComplaintOf(const std::vector<std::string>& command) {
   std::FILE* pipe = popen((ShellText(command) + " 2>&1 >/dev/null").c_str(), "r");
   if (pipe == nullptr) return command[0] + " cannot be started";
   std::string last = command[0] + " fails", text;
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) {
-    if (c != '\n') {
-      text += static_cast<char>(c);
-    } else if (!text.empty()) {
-      last = std::exchange(text, "");
-    }
-  }
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
   if (pclose(pipe) == 0) return "";
+  for (const std::string& line : SplitList(text, '\n')) {
+    if (!line.empty()) last = line;
+  }
   const std::string program = std::filesystem::path(command[0]).filename().string();
   for (const std::string& who : {program + ": error: ", std::string("ERROR: ")}) {
     if (last.rfind(who, 0) == 0) return last.substr(who.size());
@@ -106,17 +77,6 @@ void CheckVariants(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
   }
 }
 
-std::vector<BatchJob> ChosenJobs(const std::vector<BatchJob>& all) {
-  const std::vector<BatchJob> jobs = Shard(all, shard, shards);
-  if (FLAGS_job.empty()) return jobs;
-  std::vector<BatchJob> named;
-  for (const BatchJob& job : jobs) {
-    if (job.id.rfind(FLAGS_job, 0) == 0) named.push_back(job);
-  }
-  if (named.empty()) throw Error{"--job: the plan has no job '" + FLAGS_job + "' (see --list)"};
-  return named;
-}
-
 int List(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
   TextTable table({"id", "variant", "group", ">replica", ">recordings", ">held_out", "folder"});
   for (const BatchJob& job : jobs) {
@@ -131,9 +91,8 @@ int List(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
 int PrintCommands(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
   for (const BatchJob& job : jobs) {
     if (ReadResult(plan, job).done()) continue;
-    const std::string folder = JobFolder(plan, job);
-    std::string before = ShellText({"mkdir", "-p", folder}) + " && ";
-    for (const auto& command : JobCommands(job, plan, folder, OwnFolder())) {
+    std::string before = ShellText({"mkdir", "-p", JobFolder(plan, job)}) + " && ";
+    for (const auto& command : JobCommands(plan, job)) {
       std::printf("%s%s\n", before.c_str(), ShellText(command).c_str());
       before.clear();
     }
@@ -141,39 +100,32 @@ int PrintCommands(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
   return kDone;
 }
 
-std::string TimeText(double seconds) {
-  const int s = static_cast<int>(seconds + 0.5);
-  if (s < 100) return std::to_string(s) + " s";
-  return std::to_string(s / 60) + " min " + std::to_string(s % 60) + " s";
-}
-
-// Shows all jobs of the plan, whichever of them ran now.
-void ShowSummary(const BatchPlan& plan, const std::vector<BatchJob>& all) {
-  const std::vector<JobResult> rows = ReadResults(plan, all);
+// Writes and prints the summary of all jobs of the plan, whichever of them ran now.
+std::vector<JobResult> ShowSummary(const BatchPlan& plan, const std::vector<BatchJob>& all) {
+  std::vector<JobResult> rows = ReadResults(plan, all);
   WriteSummary(plan, rows);
   std::printf("%s", SummaryText(rows).c_str());
+  return rows;
 }
 
 int Gather(const BatchPlan& plan, const std::vector<BatchJob>& all) {
-  ShowSummary(plan, all);
-  std::map<std::string, int> rows;
-  for (const JobResult& row : ReadResults(plan, all)) ++rows[NameOf(row.status.state)];
-  std::printf("%d done, %d failed, %d open; results in %s\n", rows["done"], rows["failed"],
-              rows["open"], plan.dir.c_str());
+  std::map<JobState, int> rows;
+  for (const JobResult& row : ShowSummary(plan, all)) ++rows[row.state];
+  std::printf("%d done, %d failed, %d open; results in %s\n", rows[JobState::kDone],
+              rows[JobState::kFailed], rows[JobState::kOpen], plan.dir.c_str());
   return kDone;
 }
 
 int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
             const std::vector<BatchJob>& jobs) {
-  BatchRunOptions options;
-  options.jobs = FLAGS_jobs;
-  options.bin = OwnFolder();
   ProgressLine line;
-  const BatchOutcome o = OrFail(RunBatch(plan, jobs, options, [&line](const BatchProgress& p) {
-    line.Show(std::to_string(p.done) + " done, " + std::to_string(p.failed) + " failed, " +
-                  std::to_string(p.left) + " left" +
-                  (p.done + p.failed > 0 ? ", about " + TimeText(p.seconds_left) : ""),
-              static_cast<double>(p.done + p.failed) / std::max(1, p.done + p.failed + p.left));
+  const BatchOutcome o = OrFail(RunBatch(plan, jobs, FLAGS_jobs, [&line](const BatchOutcome& p) {
+    line.Show(
+        std::to_string(p.done) + " done, " + std::to_string(p.failed) + " failed, " +
+            std::to_string(p.left) + " left" +
+            (p.done + p.failed > 0 ? ", about " + std::to_string(std::lround(p.seconds_left)) + " s"
+                                   : ""),
+        static_cast<double>(p.done + p.failed) / std::max(1, p.done + p.failed + p.left));
   }));
   line.Finish();
   if (FLAGS_summary) ShowSummary(plan, all);
@@ -190,12 +142,26 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
 }
 
 int Run() {
-  CheckFlags();
+  Require("plan", FLAGS_plan, "name the TOML file of the batch");
+  int shard = 1, shards = 1;  // only every `shards`-th job, starting with number `shard`
+  char rest = 0;
+  if (!FLAGS_shard.empty() &&
+      (std::sscanf(FLAGS_shard.c_str(), "%d/%d%c", &shard, &shards, &rest) != 2 || shard < 1 ||
+       shard > shards)) {
+    throw Error{"--shard is '" + FLAGS_shard + "'; write i/n with 1 <= i <= n, as in 2/4"};
+  }
+  if (FLAGS_jobs < 1) throw Error{"--jobs must be at least 1"};
   const BatchPlan plan = OrFail(ReadPlan(FLAGS_plan));
   const Result<Manifest> manifest = ReadManifests(plan.manifest);
   if (!manifest.ok()) return Fail(plan.ErrorAt("recordings", manifest.error()));
   const std::vector<BatchJob> all = ExpandPlan(plan, manifest.value());
-  const std::vector<BatchJob> jobs = ChosenJobs(all);
+  std::vector<BatchJob> jobs;
+  for (const BatchJob& job : Shard(all, shard, shards)) {
+    if (job.id.rfind(FLAGS_job, 0) == 0) jobs.push_back(job);
+  }
+  if (jobs.empty() && !FLAGS_job.empty()) {
+    throw Error{"--job: the plan has no job '" + FLAGS_job + "' (see --list)"};
+  }
   if (!FLAGS_gather || FLAGS_list || FLAGS_dry_run) CheckVariants(plan, jobs, OwnFolder());
   if (FLAGS_list) return List(plan, jobs);
   if (FLAGS_dry_run) return PrintCommands(plan, jobs);

@@ -1,40 +1,16 @@
-// apps: the plan of pushid-batch, a TOML file:
-//
-//   [data]
-//   recordings = "M/manifest.json"   # relative to the plan
-//   setting = "single"               # as --setting; default all
-//   ids = ["a", "b"]                 # only these; default all of the setting
-//   leave_out = ["c"]                # not these of them
-//
-//   [jobs]
-//   group_by = "subject"             # recording, subject, a label (setting, ...) or none (default)
-//   folds = 0                        # k: each group in k folds, held-out recordings scored
-//   bootstrap = 0                    # replicas of each group, besides the recordings as they are
-//   seed = 1
-//   time_limit_s = 0.0               # of one job; 0: none
-//   memory_limit_mb = 0              # of one job; 0: none
-//
-//   [[variant]]                      # one or more
-//   name = "physics"
-//   flags = ["--self_force=none"]    # any flag of pushid-fit; files relative to the plan
-//   restoration = ["--kind=window"]  # flags of pushid-train-restoration; absent: none is trained
-//
-//   [output]
-//   dir = "out"                      # relative to the plan
+// apps: pushid-batch: its plan, a TOML file whose keys apps/README.md lists, the plan's jobs, and
+// the table of what they found.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "datasets/files/error.h"
 #include "datasets/manifest/manifest.h"
-#include "ident/uncertainty/uncertainty.h"
+#include "ident/prediction/evaluation.h"
 
 namespace pushid {
 
@@ -58,7 +34,7 @@ struct BatchPlan {
   int memory_limit_mb = 0;
   std::vector<BatchVariant> variants;
   std::string dir;
-  std::map<std::string, int> lines;  // of the keys of [data] and [jobs]
+  std::map<std::string, int> lines;  // of the keys of its tables
 
   // An error about the plan's value under `key` that follows from more than the plan.
   Error ErrorAt(const std::string& key, const Error& error) const;
@@ -88,11 +64,11 @@ struct BatchJob {
 // a group with fewer recordings than folds, files that cannot be read.
 std::vector<BatchJob> ExpandPlan(const BatchPlan& plan, const Manifest& manifest);
 
-// The commands of a job, one after the other: pushid-fit and, for a fold, pushid-evaluate on what
-// was held out. folder: the job's; bin: where the programs are.
-std::vector<std::vector<std::string>> JobCommands(const BatchJob& job, const BatchPlan& plan,
-                                                  const std::string& folder,
-                                                  const std::string& bin);
+std::string JobFolder(const BatchPlan& plan, const BatchJob& job);
+
+// The commands of a job, one after the other: pushid-fit, the training of a restoration, and for a
+// fold pushid-evaluate on what was held out. All write into the job's folder.
+std::vector<std::vector<std::string>> JobCommands(const BatchPlan& plan, const BatchJob& job);
 
 // Part i of n (from 1) of the jobs: every n-th one. Jobs of the same id (variants with the same
 // flags) are in one part.
@@ -109,35 +85,24 @@ constexpr EnumNames<JobState, 3> Names(JobState) {
   return {{{"done", JobState::kDone}, {"failed", JobState::kFailed}, {"open", JobState::kOpen}}};
 }
 
-struct JobStatus {
+struct JobResult {
+  const BatchJob* job = nullptr;
   JobState state = JobState::kOpen;
   std::string reason;  // of a failure
   double seconds = 0.0;
-};
-
-struct HeldOutScore {
-  Metric metric;
-  double value = 0.0;  // mean over what was held out
-};
-
-struct JobResult {
-  const BatchJob* job = nullptr;
-  JobStatus status;
   std::map<std::string, Estimate> parameters;  // free ones
   double cost = 0.0, solve_s = 0.0;
   bool settles = false;
   std::vector<std::string> warnings;
-  // Scores of the restored bodies, or of the hips where nothing is restored; empty where nothing
-  // was held out.
-  std::vector<HeldOutScore> held_out;
+  // Mean scores over what was held out: of the restored bodies, or of the hips where nothing is
+  // restored.
+  std::vector<std::pair<MetricId, double>> held_out;
 
   // Null where there is no such score.
-  const double* HeldOut(const Metric& metric) const;
+  const double* HeldOut(MetricId metric) const;
 
-  bool done() const { return status.state == JobState::kDone; }
+  bool done() const { return state == JobState::kDone; }
 };
-
-std::string JobFolder(const BatchPlan& plan, const BatchJob& job);
 
 // There are no errors: damage costs this job, which the next run does again.
 JobResult ReadResult(const BatchPlan& plan, const BatchJob& job);
@@ -148,28 +113,18 @@ JobResult ReadResult(const BatchPlan& plan, const BatchJob& job);
 // in a job's folder may be half-written by a kill and is made again. Who works on a job holds the
 // lock of its folder, so that batches may run in one output folder at the same time.
 
-struct BatchRunOptions {
-  int jobs = 1;     // at a time
-  std::string bin;  // where the programs are
-};
-
-struct BatchProgress {
-  int done = 0, failed = 0, left = 0;
-  double seconds_left = 0.0;  // by what the jobs so far took
-};
-
 struct BatchOutcome {
-  int skipped = 0, done = 0, failed = 0;
-  int elsewhere = 0;         // left to another process that was at work on them
+  int skipped = 0, done = 0, failed = 0, left = 0;
+  double seconds_left = 0.0;  // by what the jobs so far took
+  int elsewhere = 0;          // left to another process that was at work on them
   bool interrupted = false;  // Ctrl-C or a polite kill: started jobs were ended, and will be redone
   std::vector<std::string> unrecorded;  // why jobs failed whose folders could not take a status
 };
 
-// Errors: nothing can be written below the output folder; nothing is lost by trying again. A
-// failure in one job's folder costs that job.
-Result<BatchOutcome> RunBatch(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
-                              const BatchRunOptions& options,
-                              const std::function<void(const BatchProgress&)>& progress);
+// at_once: jobs that run at a time. Errors: nothing can be written below the output folder; nothing
+// is lost by trying again. A failure in one job's folder costs that job.
+Result<BatchOutcome> RunBatch(const BatchPlan& plan, const std::vector<BatchJob>& jobs, int at_once,
+                              const std::function<void(const BatchOutcome&)>& progress);
 
 // The value of a key in a list in the order of first appearance; a new key is appended with an
 // empty value.

@@ -1,26 +1,14 @@
 // apps: expanding plans, running jobs, and reading what they left.
-#include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <filesystem>
 #include <fstream>
-#include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "apps/batch/batch.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/support/app_support.h"
 #include "apps/support/processes.h"
-#include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
-#include "datasets/files/json_file.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
-#include "datasets/manifest/manifest.h"
-#include "ident/bodies/body_evaluation.h"
 #include "ident/model/model_json.h"
-#include "ident/parameters/json_archive.h"
 #include "ident/validation/crossvalidation.h"
 #include "ident/validation/scores_json.h"
 
@@ -82,39 +70,39 @@ PendulumRecording AsKnown(const ManifestRecording& entry) {
   return recording;
 }
 
-struct Part {
-  std::string group, name;
-  std::vector<int> train, held_out;  // indices into the manifest
-};
-
-std::vector<Part> PartsOf(const BatchPlan& plan, const Manifest& manifest, const std::string& group,
-                          const std::vector<int>& members) {
-  if (plan.folds == 0) return {{group, group, members, {}}};
-  std::vector<PendulumRecording> known;
-  for (int i : members) known.push_back(AsKnown(manifest.recordings[i]));
-  const auto folds = MakeFolds(known, FoldScheme::kStratified, plan.folds, 1, plan.seed);
-  if (!folds.ok()) {
-    throw plan.ErrorAt("folds", Error{"group '" + group + "' in " + std::to_string(plan.folds) +
-                                      " folds: " + folds.error().message});
-  }
-  std::vector<Part> parts;
-  for (size_t f = 0; f < folds.value().size(); ++f) {
-    Part part{group,
-              group + " fold " + std::to_string(f + 1) + " of " + std::to_string(plan.folds),
-              {},
-              {}};
-    const std::vector<int>& out = folds.value()[f].held_out;
-    for (int k = 0; k < static_cast<int>(members.size()); ++k) {
-      const bool held = std::find(out.begin(), out.end(), k) != out.end();
-      (held ? part.held_out : part.train).push_back(members[k]);
+// A group's jobs as far as their recordings go: one of all, or one for each fold.
+std::vector<BatchJob> FoldsOf(const BatchPlan& plan, const std::string& group,
+                              const std::vector<const ManifestRecording*>& members) {
+  std::vector<Fold> folds(1);
+  if (plan.folds > 0) {
+    std::vector<PendulumRecording> known;
+    for (const ManifestRecording* entry : members) known.push_back(AsKnown(*entry));
+    const auto made = MakeFolds(known, FoldScheme::kStratified, plan.folds, 1, plan.seed);
+    if (!made.ok()) {
+      throw plan.ErrorAt("folds", Error{"group '" + group + "' in " + std::to_string(plan.folds) +
+                                        " folds: " + made.error().message});
     }
-    parts.push_back(part);
+    folds = made.value();
   }
-  return parts;
+  std::vector<BatchJob> jobs;
+  for (const Fold& fold : folds) {
+    BatchJob& job = jobs.emplace_back();
+    job.group = job.folded = group;
+    if (plan.folds > 0) {
+      job.group += " fold " + std::to_string(jobs.size()) + " of " + std::to_string(plan.folds);
+    }
+    for (int k = 0; k < static_cast<int>(members.size()); ++k) {
+      const bool held =
+          std::find(fold.held_out.begin(), fold.held_out.end(), k) != fold.held_out.end();
+      (held ? job.held_out : job.recordings).push_back(members[k]->id);
+    }
+  }
+  return jobs;
 }
 
-std::vector<std::string> Those(const std::vector<std::string>& flags,
-                               const std::vector<const char*>& names) {
+// The flags of these names.
+std::vector<std::string> FlagsNamed(const std::vector<const char*>& names,
+                                    const std::vector<std::string>& flags) {
   std::vector<std::string> those;
   for (const std::string& flag : flags) {
     for (const char* name : names) {
@@ -135,100 +123,77 @@ Command AfterFit(const std::string& program, const BatchJob& job, const BatchPla
                  const std::vector<std::string>& ids, const std::string& model) {
   Command command = {program, "--model=" + model, "--recordings=" + plan.manifest,
                      "--ids=" + Joined(ids, ","), "--quiet"};
-  Append(Those(job.fit_flags, {std::begin(kLoadFlags), std::end(kLoadFlags)}), &command);
+  Append(FlagsNamed({std::begin(kLoadFlags), std::end(kLoadFlags)}, job.fit_flags), &command);
   return command;
 }
 
-class Expander {
- public:
-  Expander(const BatchPlan& plan, const Manifest& manifest) : plan_(plan), manifest_(manifest) {}
-
-  std::vector<BatchJob> Expand() {
-    const std::vector<int> chosen = Chosen();
-    common_hash_ = HashOf(*manifest_.json, manifest_.path);
-    hashes_.resize(manifest_.recordings.size());
-    std::vector<std::pair<std::string, std::vector<int>>> groups;
-    for (int i : chosen) {
-      const ManifestRecording& entry = manifest_.recordings[i];
-      hashes_[i] = HashOf(*entry.json, entry.manifest);
-      const std::string name = GroupOf(plan_.group_by, entry);
-      if (name.empty()) {
-        throw plan_.ErrorAt("group_by",
-                            Error{"must be none, recording, subject or a label; recording " +
-                                  Quoted(entry.id) + " has no label " + Quoted(plan_.group_by)});
-      }
-      ValueOf(name, &groups).push_back(i);
-    }
-    for (const BatchVariant& variant : plan_.variants) {
-      const std::string flags = FlagsHash(variant);
-      for (const auto& [name, members] : groups) {
-        for (const Part& part : PartsOf(plan_, manifest_, name, members)) {
-          AddPart(variant, flags, part);
-        }
-      }
-    }
-    return jobs_;
-  }
-
- private:
-  // Keys are checked one by one, so that the wrong one can be named.
-  std::vector<int> Chosen() const {
-    const auto by = [this](const char* key, const std::vector<std::string>& ids,
-                           const std::vector<std::string>& leave_out) {
-      const auto selected = SelectRecordings(manifest_, plan_.setting, ids, leave_out);
-      if (!selected.ok()) throw plan_.ErrorAt(key, selected.error());
-      return selected.value();
-    };
-    by("setting", {}, {});
-    by("ids", plan_.ids, {});
-    return by("leave_out", plan_.ids, plan_.leave_out);
-  }
-
-  void AddPart(const BatchVariant& variant, const std::string& flags_hash, const Part& part) {
-    for (int replica = 0; replica <= plan_.bootstrap; ++replica) {
-      BatchJob job;
-      job.variant = variant.name;
-      job.group = part.name;
-      if (!part.held_out.empty()) job.folded = part.group;
-      job.replica = replica;
-      for (int i : part.train) job.recordings.push_back(manifest_.recordings[i].id);
-      for (int i : part.held_out) job.held_out.push_back(manifest_.recordings[i].id);
-      job.fit_flags = variant.flags;
-      job.fit_flags.push_back("--seed=" + std::to_string(plan_.seed));
-      if (replica > 0) job.fit_flags.push_back("--replica=" + std::to_string(replica));
-      job.restoration_flags = variant.restoration;
-      if (job.restoration_flags) {
-        job.restoration_flags->push_back("--seed=" + std::to_string(plan_.seed));
-      }
-      ContentHash hash;
-      AddPiece(Version(), &hash);
-      AddPiece(flags_hash, &hash);
-      AddPiece(common_hash_, &hash);
-      AddPiece(std::to_string(plan_.seed) + "/" + std::to_string(replica), &hash);
-      for (int i : part.train) AddPiece(hashes_[i], &hash);
-      AddPiece("held out", &hash);
-      for (int i : part.held_out) AddPiece(hashes_[i], &hash);
-      job.id = hash.Hex();
-      jobs_.push_back(std::move(job));
-    }
-  }
-
-  const BatchPlan& plan_;
-  const Manifest& manifest_;
-  std::string common_hash_;
-  std::vector<std::string> hashes_;
-  std::vector<BatchJob> jobs_;
-};
+// The plan's recordings. Its keys are checked one by one, so that the wrong one can be named.
+std::vector<int> ChosenRecordings(const BatchPlan& plan, const Manifest& manifest) {
+  const auto by = [&](const char* key, const std::vector<std::string>& ids,
+                      const std::vector<std::string>& leave_out) {
+    const auto selected = SelectRecordings(manifest, plan.setting, ids, leave_out);
+    if (!selected.ok()) throw plan.ErrorAt(key, selected.error());
+    return selected.value();
+  };
+  by("setting", {}, {});
+  by("ids", plan.ids, {});
+  return by("leave_out", plan.ids, plan.leave_out);
+}
 
 }  // namespace
 
 std::vector<BatchJob> ExpandPlan(const BatchPlan& plan, const Manifest& manifest) {
-  return Expander(plan, manifest).Expand();
+  const std::string common_hash = HashOf(*manifest.json, manifest.path);
+  const std::string seed = std::to_string(plan.seed);
+  std::map<std::string, std::string> hashes;  // of recordings, by id
+  std::vector<std::pair<std::string, std::vector<const ManifestRecording*>>> groups;
+  for (int i : ChosenRecordings(plan, manifest)) {
+    const ManifestRecording& entry = manifest.recordings[i];
+    hashes[entry.id] = HashOf(*entry.json, entry.manifest);
+    const std::string name = GroupOf(plan.group_by, entry);
+    if (name.empty()) {
+      throw plan.ErrorAt("group_by",
+                         Error{"must be none, recording, subject or a label; recording " +
+                               Quoted(entry.id) + " has no label " + Quoted(plan.group_by)});
+    }
+    ValueOf(name, &groups).push_back(&entry);
+  }
+  std::vector<BatchJob> jobs;
+  for (const BatchVariant& variant : plan.variants) {
+    const std::string flags_hash = FlagsHash(variant);
+    for (const auto& [name, members] : groups) {
+      for (BatchJob job : FoldsOf(plan, name, members)) {
+        job.variant = variant.name;
+        job.restoration_flags = variant.restoration;
+        if (job.restoration_flags) job.restoration_flags->push_back("--seed=" + seed);
+        for (job.replica = 0; job.replica <= plan.bootstrap; ++job.replica) {
+          const std::string replica = std::to_string(job.replica);
+          job.fit_flags = variant.flags;
+          job.fit_flags.push_back("--seed=" + seed);
+          if (job.replica > 0) job.fit_flags.push_back("--replica=" + replica);
+          ContentHash hash;
+          for (const std::string& piece :
+               {Version(), flags_hash, common_hash, seed + "/" + replica}) {
+            AddPiece(piece, &hash);
+          }
+          for (const std::string& id : job.recordings) AddPiece(hashes[id], &hash);
+          AddPiece("held out", &hash);
+          for (const std::string& id : job.held_out) AddPiece(hashes[id], &hash);
+          job.id = hash.Hex();
+          jobs.push_back(job);
+        }
+      }
+    }
+  }
+  return jobs;
 }
 
-std::vector<std::vector<std::string>> JobCommands(const BatchJob& job, const BatchPlan& plan,
-                                                  const std::string& folder,
-                                                  const std::string& bin) {
+std::string JobFolder(const BatchPlan& plan, const BatchJob& job) {
+  return plan.dir + "/jobs/" + job.id;
+}
+
+std::vector<std::vector<std::string>> JobCommands(const BatchPlan& plan, const BatchJob& job) {
+  const std::string folder = JobFolder(plan, job), bin = OwnFolder();
   const std::string model = folder + "/model.json", restoration = folder + "/restoration";
   Command fit = {bin + "/pushid-fit", "--recordings=" + plan.manifest,
                  "--ids=" + Joined(job.recordings, ","), "--model_out=" + model, "--quiet"};
@@ -245,7 +210,7 @@ std::vector<std::vector<std::string>> JobCommands(const BatchJob& job, const Bat
   evaluate.push_back("--json_out=" + folder + "/scores.json");
   if (job.restoration_flags) {
     evaluate.push_back("--restoration=" + restoration);
-    Append(Those(*job.restoration_flags, {"postprocess"}), &evaluate);
+    Append(FlagsNamed({"postprocess"}, *job.restoration_flags), &evaluate);
   }
   commands.push_back(evaluate);
   return commands;
@@ -267,36 +232,25 @@ namespace fs = std::filesystem;
 
 std::string StatusFile(const std::string& folder) { return folder + "/status.json"; }
 
-// status.json says how a job ended; it is written last and whole.
+// Reads how a job ended from its status.json, which is written last and whole; without one it is
+// open.
 //
 //   {"id": "...", "variant": "physics", "group": "X05", "replica": 0, "status": "failed",
 //    "reason": "...", "commands": [["pushid-fit", ...], ...], "run": {"seconds": 1.5}}
-MaybeError WriteJobStatus(const std::string& folder, const BatchJob& job, const JobStatus& status,
-                          const std::vector<std::vector<std::string>>& commands) {
-  const nlohmann::ordered_json json = {
-      {"schema", "pushid-job/1"}, {"id", job.id},           {"variant", job.variant},
-      {"group", job.group},       {"replica", job.replica}, {"status", NameOf(status.state)},
-      {"reason", status.reason},  {"commands", commands},   {"run", {{"seconds", status.seconds}}}};
-  return WriteJson(StatusFile(folder), json);
-}
-
-// kOpen where the folder has no status.json.
-JobStatus ReadJobStatus(const std::string& folder) {
-  JobStatus status;
+void ReadStatus(const std::string& file, JobResult* result) {
   std::error_code ignored;
-  if (!std::filesystem::exists(StatusFile(folder), ignored)) return status;
-  const JsonDocument document = OrFail(ReadJsonDocument(StatusFile(folder)));
+  if (!fs::exists(file, ignored)) return;
+  const JsonDocument document = OrFail(ReadJsonDocument(file));
   JsonFields fields(document, document.content, "", "status");
   fields.Require("status", "done or failed");
-  status.state = fields.Choice("status", JobState::kFailed);
-  status.reason = fields.Text("reason", "why the job failed");
+  result->state = fields.Choice("status", JobState::kFailed);
+  result->reason = fields.Text("reason", "why the job failed");
   if (fields.Require("run", "an object with the seconds")) {
     JsonFields run(document, fields.At("run"), fields.Pointer("run"), "status, run");
-    status.seconds = run.Number("seconds", "how long the job took");
+    result->seconds = run.Number("seconds", "how long the job took");
     fields.Add(run);
   }
   OrFail(fields.error());
-  return status;
 }
 
 void AddModel(const FitResult& fit, JobResult* result) {
@@ -309,44 +263,35 @@ void AddModel(const FitResult& fit, JobResult* result) {
   result->solve_s = fit.solve_seconds;
 }
 
-std::vector<HeldOutScore> ReadHeldOut(const std::string& path, bool bodies) {
-  const JsonDocument document = OrFail(ReadJsonDocument(path));
-  const MetricList metrics = bodies ? kBodyMetrics : TableMetrics(0);
-  const Metrics means = OrFail(MeanMetrics(document.content, metrics, path));
-  std::vector<HeldOutScore> scores;
-  for (MetricId m : metrics) scores.push_back({kMetrics[m], means[m]});
-  return scores;
-}
-
 }  // namespace
 
-const double* JobResult::HeldOut(const Metric& metric) const {
-  const auto at = std::find_if(held_out.begin(), held_out.end(), [&metric](const auto& score) {
-    return score.metric.Key() == metric.Key();
-  });
-  return at == held_out.end() ? nullptr : &at->value;
-}
-
-std::string JobFolder(const BatchPlan& plan, const BatchJob& job) {
-  return plan.dir + "/jobs/" + job.id;
+const double* JobResult::HeldOut(MetricId metric) const {
+  const auto at = std::find_if(held_out.begin(), held_out.end(),
+                               [metric](const auto& score) { return score.first == metric; });
+  return at == held_out.end() ? nullptr : &at->second;
 }
 
 JobResult ReadResult(const BatchPlan& plan, const BatchJob& job) {
-  const std::string folder = JobFolder(plan, job);
+  const std::string folder = JobFolder(plan, job), scores = folder + "/scores.json";
   JobResult result;
   result.job = &job;
   try {
-    result.status = ReadJobStatus(folder);
+    ReadStatus(StatusFile(folder), &result);
     if (!result.done()) return result;
     AddModel(OrFail(ReadFittedModel(folder + "/model.json")).fit, &result);
     if (job.held_out.empty()) return result;
-    result.held_out = ReadHeldOut(folder + "/scores.json", job.restoration_flags.has_value());
+    const MetricList metrics = job.restoration_flags ? kBodyMetrics : TableMetrics(0);
+    const JsonDocument document = OrFail(ReadJsonDocument(scores));
+    const Metrics means = OrFail(MeanMetrics(document.content, metrics, scores));
+    for (MetricId m : metrics) result.held_out.emplace_back(m, means[m]);
     return result;
   } catch (const Error& error) {
     // The table shows nothing of a job whose files are not whole.
     JobResult failed;
     failed.job = &job;
-    failed.status = {JobState::kFailed, error.ToString(), result.status.seconds};
+    failed.state = JobState::kFailed;
+    failed.reason = error.ToString();
+    failed.seconds = result.seconds;
     return failed;
   }
 }
@@ -396,22 +341,23 @@ struct Running {
 
 class Pool {
  public:
-  Pool(const BatchPlan& plan, const BatchRunOptions& options,
-       const std::function<void(const BatchProgress&)>& progress)
-      : plan_(plan), options_(options), progress_(progress), begin_(Clock::now()) {}
+  Pool(const BatchPlan& plan, int at_once, const std::function<void(const BatchOutcome&)>& progress)
+      : plan_(plan), at_once_(at_once), progress_(progress), begin_(Clock::now()) {}
 
   Result<BatchOutcome> Run(const std::vector<const BatchJob*>& waiting, int skipped) {
     outcome_.skipped = skipped;
     size_t next = 0;
     while (!error_) {
       while (!signals_.interrupted() && !error_ && next < waiting.size() &&
-             static_cast<int>(running_.size()) < options_.jobs) {
+             static_cast<int>(running_.size()) < at_once_) {
         Begin(*waiting[next++]);
       }
-      left_ = static_cast<int>(waiting.size() - next + running_.size());
-      Report();
+      outcome_.left = static_cast<int>(waiting.size() - next + running_.size());
+      const int finished = outcome_.done + outcome_.failed;
+      outcome_.seconds_left = finished > 0 ? Since(begin_) / finished * outcome_.left : 0.0;
+      progress_(outcome_);
       if (signals_.interrupted() || running_.empty()) break;
-      signals_.Wait(EndOfWait());
+      signals_.Wait(plan_.time_limit_s > 0.0 ? 50 : 500);  // ms
       Collect();
     }
     outcome_.interrupted = signals_.interrupted();
@@ -425,7 +371,8 @@ class Pool {
     Running running;
     running.job = &job;
     running.folder = JobFolder(plan_, job);
-    const Result<bool> mine = TakeFolder(running.folder, &running.lock);
+    if (MaybeError error = MakeFolder(running.folder)) return Fail(running, error->ToString());
+    const Result<bool> mine = running.lock.Take(running.folder);
     if (!mine.ok()) return Fail(running, mine.error().ToString());
     if (!mine.value()) {
       ++outcome_.elsewhere;
@@ -439,26 +386,19 @@ class Pool {
     // A job that is half-written or failed is cleared; its folder stays, because it is what is
     // locked.
     if (const MaybeError stuck = Empty(running.folder)) return Fail(running, stuck->ToString());
-    running.commands = JobCommands(job, plan_, running.folder, options_.bin);
+    running.commands = JobCommands(plan_, job);
     running.begin = Clock::now();
     if (const MaybeError failed = Start(&running)) return Fail(running, failed->ToString());
     running_.push_back(std::move(running));
   }
 
   static MaybeError Empty(const std::string& folder) {
-    std::error_code failed;
-    for (fs::directory_iterator it(folder, failed); !failed && it != fs::directory_iterator();
-         it.increment(failed)) {
-      fs::remove_all(it->path(), failed);
-      if (failed) return Error{"cannot be removed: " + failed.message(), it->path().string()};
+    try {
+      for (const auto& entry : fs::directory_iterator(folder)) fs::remove_all(entry.path());
+    } catch (const fs::filesystem_error& error) {
+      return Error{"cannot be removed: " + error.code().message(), error.path1().string()};
     }
-    if (failed) return Error{"cannot be read: " + failed.message(), folder};
     return std::nullopt;
-  }
-
-  static Result<bool> TakeFolder(const std::string& folder, FolderLock* lock) {
-    if (MaybeError error = MakeFolder(folder)) return *error;
-    return lock->Take(folder);
   }
 
   // Starts the job's next command.
@@ -543,9 +483,19 @@ class Pool {
 
   // reason: empty when it is done.
   static MaybeError WriteStatus(const Running& running, const std::string& reason) {
+    const BatchJob& job = *running.job;
     const double seconds = running.commands.empty() ? 0.0 : Since(running.begin);
-    const JobState state = reason.empty() ? JobState::kDone : JobState::kFailed;
-    return WriteJobStatus(running.folder, *running.job, {state, reason, seconds}, running.commands);
+    const nlohmann::ordered_json json = {
+        {"schema", "pushid-job/1"},
+        {"id", job.id},
+        {"variant", job.variant},
+        {"group", job.group},
+        {"replica", job.replica},
+        {"status", NameOf(reason.empty() ? JobState::kDone : JobState::kFailed)},
+        {"reason", reason},
+        {"commands", running.commands},
+        {"run", {{"seconds", seconds}}}};
+    return WriteJson(StatusFile(running.folder), json);
   }
 
   // Ends the running jobs, which have no status yet and will be redone.
@@ -562,42 +512,30 @@ class Pool {
     }
   }
 
-  int EndOfWait() const { return plan_.time_limit_s > 0.0 ? 50 : 500; }
-
-  void Report() {
-    const int finished = outcome_.done + outcome_.failed;
-    const double each = finished > 0 ? Since(begin_) / finished : 0.0;
-    progress_({outcome_.done, outcome_.failed, left_, each * left_});
-  }
-
   const BatchPlan& plan_;
-  const BatchRunOptions& options_;
-  const std::function<void(const BatchProgress&)>& progress_;
+  const int at_once_;
+  const std::function<void(const BatchOutcome&)>& progress_;
   const Clock::time_point begin_;
   SignalReader signals_;
   std::vector<Running> running_;
   BatchOutcome outcome_;
-  int left_ = 0;
   MaybeError error_;
 };
 
 }  // namespace
 
-Result<BatchOutcome> RunBatch(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
-                              const BatchRunOptions& options,
-                              const std::function<void(const BatchProgress&)>& progress) {
+Result<BatchOutcome> RunBatch(const BatchPlan& plan, const std::vector<BatchJob>& jobs, int at_once,
+                              const std::function<void(const BatchOutcome&)>& progress) {
   std::vector<const BatchJob*> waiting;
   std::set<std::string> seen;  // variants of the same flags share their jobs
   int skipped = 0;
   for (const BatchJob& job : jobs) {
     if (!seen.insert(job.id).second) continue;
-    if (ReadResult(plan, job).done()) {
-      ++skipped;
-      continue;
-    }
-    waiting.push_back(&job);
+    const bool done = ReadResult(plan, job).done();
+    skipped += done;
+    if (!done) waiting.push_back(&job);
   }
-  return Pool(plan, options, progress).Run(waiting, skipped);
+  return Pool(plan, at_once, progress).Run(waiting, skipped);
 }
 
 }  // namespace pushid

@@ -17,17 +17,11 @@
 #endif
 #include <toml++/toml.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <map>
 #include <set>
 
 #include "apps/support/app_support.h"
 #include "datasets/files/input_file.h"
-#include "datasets/files/names.h"
-#include "datasets/manifest/manifest.h"
-#include "models/enum_names.h"
-#include "models/restoration/restoration.h"
 
 namespace pushid {
 namespace {
@@ -58,7 +52,11 @@ class PlanReader {
     Data();
     Jobs();
     Variants();
-    Output();
+    const toml::table& output = *Table("output", {"dir"});
+    std::string dir;
+    Get(output, "dir", "a string", &dir);
+    if (dir.empty()) Fail(output, "[output] needs dir = \"out\"");
+    plan_.dir = Resolve(dir);
     return plan_;
   }
 
@@ -78,17 +76,17 @@ class PlanReader {
     }
   }
 
-  void KeepLines(const toml::table& table) {
-    for (const auto& [key, value] : table) plan_.lines[std::string(key.str())] = LineOf(value);
-  }
-
-  // Null where there is none, unless it is needed.
-  const toml::table* Table(const char* name, bool needed) {
+  // Null where there is none, unless it is needed. keys: those that it may have.
+  const toml::table* Table(const char* name, const std::vector<std::string>& keys,
+                           bool needed = true) {
     const toml::node* node = root_.get(name);
     if (node == nullptr && needed) Fail(root_, "the plan has no [" + std::string(name) + "]");
     if (node == nullptr) return nullptr;
     if (!node->is_table()) Fail(*node, std::string(name) + " must be a table: [" + name + "]");
-    return node->as_table();
+    const toml::table& table = *node->as_table();
+    Known(table, "[" + std::string(name) + "]", keys);
+    for (const auto& [key, value] : table) plan_.lines[std::string(key.str())] = LineOf(value);
+    return &table;
   }
 
   // Leaves *value alone where the key is absent.
@@ -128,9 +126,7 @@ class PlanReader {
   }
 
   void Data() {
-    const toml::table* data = Table("data", true);
-    Known(*data, "[data]", {"recordings", "setting", "ids", "leave_out"});
-    KeepLines(*data);
+    const toml::table* data = Table("data", {"recordings", "setting", "ids", "leave_out"});
     std::string manifest;
     Get(*data, "recordings", "a string: the manifest's path, or several, comma-separated",
         &manifest);
@@ -144,11 +140,10 @@ class PlanReader {
   }
 
   void Jobs() {
-    const toml::table* jobs = Table("jobs", false);
+    const toml::table* jobs =
+        Table("jobs", {"group_by", "folds", "bootstrap", "seed", "time_limit_s", "memory_limit_mb"},
+              false);
     if (jobs == nullptr) return;
-    Known(*jobs, "[jobs]",
-          {"group_by", "folds", "bootstrap", "seed", "time_limit_s", "memory_limit_mb"});
-    KeepLines(*jobs);
     Get(*jobs, "group_by", "a string", &plan_.group_by);
     GetCount(*jobs, "folds", 1000, &plan_.folds);
     if (plan_.folds == 1) Fail(*jobs->get("folds"), "folds is 1; it must be 0 or at least 2");
@@ -158,11 +153,7 @@ class PlanReader {
     Get(*jobs, "seed", "a whole number", &seed);
     if (seed < 0) Fail(*jobs->get("seed"), "seed must not be negative");
     plan_.seed = static_cast<uint64_t>(seed);
-    TimeLimit(*jobs);
-  }
-
-  void TimeLimit(const toml::table& jobs) {
-    const toml::node* limit = jobs.get("time_limit_s");
+    const toml::node* limit = jobs->get("time_limit_s");
     if (limit == nullptr) return;
     const auto seconds = limit->value<double>();  // 60 or 60.0
     if (!limit->is_number() || !seconds || !(*seconds >= 0.0)) {
@@ -191,18 +182,14 @@ class PlanReader {
       const toml::node* flags = table.get("flags");
       variant.line = LineOf(flags == nullptr ? table : *flags);
       for (const std::string& flag : variant.flags) CheckFlag(table, flag);
-      GetRestoration(table, &variant);
+      if (const toml::node* bodies = table.get("restoration")) {
+        variant.restoration.emplace();
+        variant.restoration_line = LineOf(*bodies);
+        GetStrings(table, "restoration", &*variant.restoration);
+        for (const std::string& flag : *variant.restoration) CheckFlag(*bodies, flag);
+      }
       plan_.variants.push_back(variant);
     }
-  }
-
-  void GetRestoration(const toml::table& table, BatchVariant* variant) {
-    const toml::node* node = table.get("restoration");
-    if (node == nullptr) return;
-    variant->restoration.emplace();
-    variant->restoration_line = LineOf(*node);
-    GetStrings(table, "restoration", &*variant->restoration);
-    for (const std::string& flag : *variant->restoration) CheckFlag(*node, flag);
   }
 
   void CheckFlag(const toml::node& at, const std::string& flag) {
@@ -221,15 +208,6 @@ class PlanReader {
         name == "list_parameters") {
       Fail(at, "--" + name + " does not run a fit; leave it out");
     }
-  }
-
-  void Output() {
-    const toml::table* output = Table("output", true);
-    Known(*output, "[output]", {"dir"});
-    std::string dir;
-    Get(*output, "dir", "a string", &dir);
-    if (dir.empty()) Fail(*output, "[output] needs dir = \"out\"");
-    plan_.dir = Resolve(dir);
   }
 
   const std::string& path_;

@@ -1,17 +1,9 @@
 // apps: what a batch found, in files and in tables for people.
-#include <algorithm>
 #include <cctype>
-#include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "apps/batch/batch.h"
-#include "apps/support/app_support.h"
-#include "datasets/files/atomic_file.h"
-#include "datasets/files/json_file.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
-#include "ident/figures/text_table.h"
+#include "apps/flags/command_line.h"
 #include "ident/parameters/json_archive.h"
 #include "ident/problem/statistics.h"
 #include "ident/report/document.h"
@@ -27,10 +19,8 @@ constexpr size_t kMostRowsInText = 40, kMostRowsOnPage = 2000;
 // A column of the table. A new one is a row in JobColumns: summary.csv, summary.json, the page and
 // the terminal take name, place and cell from there.
 struct JobCell {
-  std::string exact{};  // in summary.csv
-  std::string shown{};  // to people: rounded or shortened
-  // A number that is summarized over groups (JobColumn::over_groups).
-  std::optional<double> number{};
+  std::string exact{};            // in summary.csv
+  std::string shown{};            // to people: rounded or shortened
   nlohmann::ordered_json json{};  // null: not in summary.json
 };
 
@@ -39,28 +29,27 @@ struct JobColumn {
   std::string place;  // in a job of summary.json: "/run/seconds"
   std::string title;  // on the page; empty: only in the files
   bool words;         // to the left
-  bool over_groups;   // the variants' table has its mean and spread over groups
   std::function<JobCell(const JobResult&)> cell;
 };
 
+template <typename T>
+void AddOnce(const T& one, std::vector<T>* all) {
+  if (std::find(all->begin(), all->end(), one) == all->end()) all->push_back(one);
+}
+
 // All metrics by which some job was scored.
-std::vector<Metric> HeldOutMetrics(const std::vector<JobResult>& rows) {
-  std::vector<Metric> metrics;
+MetricList HeldOutMetrics(const std::vector<JobResult>& rows) {
+  MetricList metrics;
   for (const JobResult& row : rows) {
-    for (const HeldOutScore& score : row.held_out) {
-      const bool known = std::any_of(metrics.begin(), metrics.end(), [&score](const Metric& m) {
-        return m.Key() == score.metric.Key();
-      });
-      if (!known) metrics.push_back(score.metric);
-    }
+    for (const auto& [metric, value] : row.held_out) AddOnce(metric, &metrics);
   }
   return metrics;
 }
 
-JobCell Words(const std::string& text) { return {text, text, {}, text}; }
+JobCell Words(const std::string& text) { return {text, text, text}; }
 
 JobCell Number(double value, int digits) {
-  return {DoubleText(value), Rounded(value, digits), value, NumberJson(value)};
+  return {DoubleText(value), Rounded(value, digits), NumberJson(value)};
 }
 
 JobCell Nothing() { return {}; }
@@ -85,18 +74,6 @@ std::string LowerCase(const std::string& name) {
   return text;
 }
 
-// Names in the order in which jobs first have them.
-std::vector<std::string> ParameterNames(const std::vector<JobResult>& rows) {
-  std::vector<std::string> names;
-  std::set<std::string> seen;
-  for (const JobResult& row : rows) {
-    for (const auto& [name, value] : row.parameters) {
-      if (seen.insert(name).second) names.push_back(name);
-    }
-  }
-  return names;
-}
-
 // A name may have a slash.
 std::string Place(const char* folder, const std::string& name, const char* rest = "") {
   return (Json::json_pointer(folder) / name).to_string() + rest;
@@ -106,25 +83,20 @@ std::string Place(const char* folder, const std::string& name, const char* rest 
 JobColumn OfParameter(const std::string& name, const char* ending, const char* key, bool words,
                       JobCell (*cell)(const Estimate&)) {
   const bool value = *ending == '\0';  // on the page error and status stand beside it
-  return {name + ending,
-          Place("/parameters", name, key),
-          value ? name : "",
-          words,
-          value,
+  return {name + ending, Place("/parameters", name, key), value ? name : "", words,
           [name, cell](const JobResult& row) {
             const auto found = row.parameters.find(name);
             return found == row.parameters.end() ? JobCell{} : cell(found->second);
           }};
 }
 
-JobColumn HeldOutColumn(const Metric& metric) {
+JobColumn HeldOutColumn(MetricId id) {
+  const Metric& metric = kMetrics[id];
   return {"held_out_" + LowerCase(metric.name) + "_" + metric.unit,
           Place("/held_out", metric.Key()),
-          std::string("held-out ") + metric.name + ", " + metric.unit,
-          false,
-          false,
-          [metric](const JobResult& row) {
-            const double* const value = row.HeldOut(metric);
+          std::string("held-out ") + metric.name + ", " + metric.unit, false,
+          [id](const JobResult& row) {
+            const double* const value = row.HeldOut(id);
             return value != nullptr ? Number(*value, 3) : Nothing();
           }};
 }
@@ -133,23 +105,25 @@ JobColumn HeldOutColumn(const Metric& metric) {
 std::vector<JobColumn> JobColumns(const std::vector<JobResult>& rows) {
   using Row = const JobResult&;
   std::vector<JobColumn> columns = {
-      {"id", "/id", "job", true, false,
+      {"id", "/id", "job", true,
        [](Row r) {
-         return JobCell{r.job->id, r.job->id.substr(0, 8), {}, r.job->id};
+         return JobCell{r.job->id, r.job->id.substr(0, 8), r.job->id};
        }},
-      {"variant", "/variant", "variant", true, false, [](Row r) { return Words(r.job->variant); }},
-      {"group", "/group", "group", true, false, [](Row r) { return Words(r.job->group); }},
-      {"replica", "/replica", "replica", false, false,
+      {"variant", "/variant", "variant", true, [](Row r) { return Words(r.job->variant); }},
+      {"group", "/group", "group", true, [](Row r) { return Words(r.job->group); }},
+      {"replica", "/replica", "replica", false,
        [](Row r) {
          const std::string text = std::to_string(r.job->replica);
-         return JobCell{text, text, {}, r.job->replica};
+         return JobCell{text, text, r.job->replica};
        }},
-      {"status", "/status", "status", true, false,
-       [](Row r) { return Words(NameOf(r.status.state)); }},
-      {"reason", "/reason", "", true, false, [](Row r) { return Words(r.status.reason); }},
+      {"status", "/status", "status", true, [](Row r) { return Words(NameOf(r.state)); }},
+      {"reason", "/reason", "", true, [](Row r) { return Words(r.reason); }},
   };
   const auto add = [&columns](JobColumn column) { columns.push_back(std::move(column)); };
-  const std::vector<std::string> names = ParameterNames(rows);
+  std::vector<std::string> names;  // in the order in which jobs first have them
+  for (const JobResult& row : rows) {
+    for (const auto& [name, value] : row.parameters) AddOnce(name, &names);
+  }
   const auto of_parameters = [&](const char* ending, const char* key, bool words,
                                  JobCell (*cell)(const Estimate&)) {
     for (const std::string& name : names) add(OfParameter(name, ending, key, words, cell));
@@ -165,57 +139,33 @@ std::vector<JobColumn> JobColumns(const std::vector<JobResult>& rows) {
                 [](const Estimate& e) { return Words(NameOf(e.status)); });
   of_parameters("_data_share", "/data_share", false,
                 [](const Estimate& e) { return Number(e.shares.data, 3); });
-  add({"cost", "/cost", "", false, false,
-       [](Row r) { return r.done() ? Number(r.cost, 4) : Nothing(); }});
-  add({"settles", "/settles", "settles", false, false, [](Row r) {
+  add({"cost", "/cost", "", false, [](Row r) { return r.done() ? Number(r.cost, 4) : Nothing(); }});
+  add({"settles", "/settles", "settles", false, [](Row r) {
          if (!r.done()) return Nothing();
          const std::string text = r.settles ? "yes" : "no";
-         return JobCell{text, text, {}, r.settles};
+         return JobCell{text, text, r.settles};
        }});
-  for (const Metric& metric : HeldOutMetrics(rows)) add(HeldOutColumn(metric));
-  add({"warnings", "/warnings", "warnings", false, false, [](Row r) {
+  for (MetricId metric : HeldOutMetrics(rows)) add(HeldOutColumn(metric));
+  add({"warnings", "/warnings", "warnings", false, [](Row r) {
          if (r.warnings.empty()) return Nothing();
-         return JobCell{
-             Joined(r.warnings, "; "), std::to_string(r.warnings.size()), {}, r.warnings};
+         return JobCell{Joined(r.warnings, "; "), std::to_string(r.warnings.size()), r.warnings};
        }});
-  add({"solve_s", "/run/solve_s", "solve s", false, false, [](Row r) {
+  add({"solve_s", "/run/solve_s", "solve s", false, [](Row r) {
          JobCell cell = r.done() ? Number(r.solve_s, 2) : Nothing();
          cell.json = r.solve_s;
          return cell;
        }});
-  add({"seconds", "/run/seconds", "seconds", false, false, [](Row r) {
-         JobCell cell = r.status.state == JobState::kOpen ? Nothing() : Number(r.status.seconds, 2);
-         cell.json = r.status.seconds;
+  add({"seconds", "/run/seconds", "seconds", false, [](Row r) {
+         JobCell cell = r.state == JobState::kOpen ? Nothing() : Number(r.seconds, 2);
+         cell.json = r.seconds;
          return cell;
        }});
   return columns;
 }
 
-struct VariantSummary {
-  std::map<JobState, int> jobs;
-  std::map<std::string, std::vector<double>> values;
-};
-
-std::vector<std::pair<std::string, VariantSummary>> ByVariant(const std::vector<JobResult>& rows) {
-  std::vector<std::pair<std::string, VariantSummary>> variants;
-  const std::vector<JobColumn> columns = JobColumns(rows);
-  for (const JobResult& row : rows) {
-    VariantSummary& variant = ValueOf(row.job->variant, &variants);
-    ++variant.jobs[row.status.state];
-    if (row.job->replica > 0) continue;
-    for (const JobColumn& column : columns) {
-      if (!column.over_groups) continue;
-      const std::optional<double> number = column.cell(row).number;
-      if (number) variant.values[column.title].push_back(*number);
-    }
-  }
-  return variants;
-}
-
 // The folds of one group: what each variant scored on each.
 struct FoldScores {
-  std::vector<std::string> variants;  // in the plan's order
-  std::vector<std::string> folds;
+  std::vector<std::string> variants, folds;                                // in the plan's order
   std::map<std::pair<std::string, std::string>, const JobResult*> scores;  // by variant and fold
 
   bool Has(const std::string& variant, const std::string& fold) const {
@@ -232,10 +182,6 @@ struct FoldScores {
   }
 };
 
-void AddOnce(const std::string& name, std::vector<std::string>* names) {
-  if (std::find(names->begin(), names->end(), name) == names->end()) names->push_back(name);
-}
-
 std::vector<std::pair<std::string, FoldScores>> ByGroup(const std::vector<JobResult>& rows) {
   std::vector<std::pair<std::string, FoldScores>> groups;
   for (const JobResult& row : rows) {
@@ -250,15 +196,8 @@ std::vector<std::pair<std::string, FoldScores>> ByGroup(const std::vector<JobRes
   return groups;
 }
 
-// "0.0123 +- 0.0045": mean of paired values with its error over folds.
-std::string MeanWithError(const std::vector<double>& values) {
-  if (values.size() < 2) return "-";
-  const MeanAndError mean = MeanOf(values);
-  return Rounded(mean.mean, 3) + " +- " + Rounded(mean.error, 2);
-}
-
 std::vector<std::string> HeldOutRow(const std::string& group, const std::string& variant,
-                                    const FoldScores& of, const std::vector<Metric>& metrics) {
+                                    const FoldScores& of, const MetricList& metrics) {
   const std::vector<std::string> compared = of.FoldsOfAll();
   std::string missing;
   for (const std::string& fold : of.folds) {
@@ -268,7 +207,7 @@ std::vector<std::string> HeldOutRow(const std::string& group, const std::string&
   }
   std::vector<std::string> cells = {
       group, variant, std::to_string(compared.size()) + " of " + std::to_string(of.folds.size())};
-  for (const Metric& metric : metrics) {
+  for (MetricId metric : metrics) {
     std::vector<double> values, differences;
     for (const std::string& fold : compared) {
       const double* const value = of.scores.at({variant, fold})->HeldOut(metric);
@@ -277,7 +216,9 @@ std::vector<std::string> HeldOutRow(const std::string& group, const std::string&
       if (value != nullptr && first != nullptr) differences.push_back(*value - *first);
     }
     cells.push_back(values.empty() ? "-" : Rounded(MeanOf(values).mean, 3));
-    cells.push_back(variant == of.variants[0] ? "-" : MeanWithError(differences));
+    const bool compares = variant != of.variants[0] && differences.size() > 1;
+    const MeanAndError mean = compares ? MeanOf(differences) : MeanAndError{};
+    cells.push_back(compares ? Rounded(mean.mean, 3) + " +- " + Rounded(mean.error, 2) : "-");
   }
   cells.push_back(missing.empty() ? "-" : missing);
   return cells;
@@ -288,8 +229,9 @@ std::vector<std::string> HeldOutRow(const std::string& group, const std::string&
 // with its standard error over folds; and which folds are missing.
 TextTable HeldOutTable(const std::vector<JobResult>& rows) {
   std::vector<std::string> header = {"group", "variant", ">folds compared"};
-  const std::vector<Metric> metrics = HeldOutMetrics(rows);
-  for (const Metric& metric : metrics) {
+  const MetricList metrics = HeldOutMetrics(rows);
+  for (MetricId id : metrics) {
+    const Metric& metric = kMetrics[id];
     header.push_back(std::string(">held-out ") + metric.name + ", " + metric.unit);
     header.push_back(">minus the first variant");
   }
@@ -314,16 +256,26 @@ std::pair<double, double> MeanAndDeviation(const std::vector<double>& values) {
 
 // Counts of each variant, and how its estimates (replica 0) differ between groups.
 TextTable VariantTable(const std::vector<JobResult>& rows) {
+  struct Variant {
+    std::map<JobState, int> jobs;
+    std::map<std::string, std::vector<double>> values;
+  };
+  std::vector<std::pair<std::string, Variant>> variants;
+  for (const JobResult& row : rows) {
+    Variant& variant = ValueOf(row.job->variant, &variants);
+    ++variant.jobs[row.state];
+    if (row.job->replica > 0) continue;
+    for (const auto& [name, e] : row.parameters) variant.values[name].push_back(e.value);
+  }
   TextTable table({"variant", ">jobs done", ">failed", ">open", "over groups", ">mean",
                    ">std deviation", ">lowest", ">highest"});
-  for (const auto& [name, v] : ByVariant(rows)) {
+  for (auto& [name, variant] : variants) {
     std::vector<std::string> counts = {name};
     for (JobState state : {JobState::kDone, JobState::kFailed, JobState::kOpen}) {
-      const auto found = v.jobs.find(state);
-      counts.push_back(std::to_string(found == v.jobs.end() ? 0 : found->second));
+      counts.push_back(std::to_string(variant.jobs[state]));
     }
     table.Add(counts);
-    for (const auto& [what, values] : v.values) {
+    for (const auto& [what, values] : variant.values) {
       const auto [mean, deviation] = MeanAndDeviation(values);
       const auto [low, high] = std::minmax_element(values.begin(), values.end());
       table.Add({"", "", "", "", what, Rounded(mean, 4),
@@ -396,9 +348,9 @@ TextTable WarningTable(const std::vector<JobResult>& rows) {
 TextTable FailureTable(const std::vector<JobResult>& rows) {
   TextTable table({"failed", "variant", "group", ">replica", "reason"});
   for (const JobResult& row : rows) {
-    if (row.status.state != JobState::kFailed || table.rows().size() > kMostRowsOnPage) continue;
+    if (row.state != JobState::kFailed || table.rows().size() > kMostRowsOnPage) continue;
     table.Add({row.job->id.substr(0, 8), row.job->variant, row.job->group,
-               std::to_string(row.job->replica), row.status.reason});
+               std::to_string(row.job->replica), row.reason});
   }
   return table;
 }
