@@ -66,7 +66,7 @@ TEST_F(BatchFaultTest, LongListsOfRecordingsReachTheFit) {
   EXPECT_TRUE(Contains(run.out, "the fit did not converge")) << run.out << run.err;
 }
 
-// What is listed as failed is done by the next run; nothing but the job it stands for is lost.
+// A job that is listed as failed is done by the next run; nothing but that job is lost.
 TEST_F(BatchFaultTest, DamagedResultsCostTheirOwnJobsOnly) {
   const std::string plan = Plan("group_by = \"subject\"\nfolds = 2", {{"a", ""}});
   Succeeded(Batch(plan, {"--jobs=2"}));

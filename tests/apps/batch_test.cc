@@ -38,7 +38,7 @@ TEST_F(BatchTest, OneBadVariantCostsItsOwnJobsOnly) {
   EXPECT_TRUE(Contains(run.out, "4 done, 4 failed, 0 done before"));
   EXPECT_TRUE(Contains(ReadText(Path("out/summary.html")), "recording &#39;"));
   EXPECT_EQ(Json(Path("out/summary.json"))["jobs"].size(), 8u);
-  // What is done is not done again; what failed is tried again.
+  // Jobs that are done are not done again; failed ones are tried again.
   EXPECT_TRUE(Contains(Batch(plan).out, "0 done, 4 failed, 4 done before"));
   EXPECT_EQ(Table("out"), rows);
 }
@@ -145,7 +145,7 @@ TEST_F(BatchTest, FoldsAreComparedInPairs) {
   }
 }
 
-// Those held out are filtered and resampled as those that were fitted.
+// Held-out recordings are filtered and resampled as those that were fitted.
 TEST_F(BatchTest, FoldsAreReadAlike) {
   const std::string plan = Plan(
       "folds = 2", {{"slow", "\"--lowpass_hz=6\", \"--resample_fps=30\", \"--length_unit=mm\""}});
@@ -195,14 +195,14 @@ TEST_F(BatchTest, IdsFollowTheContent) {
   size_t kept = 0;
   for (const std::string& id : changed) kept += ids.count(id);
   EXPECT_EQ(kept, 22u);
-  // What the manifest says of all its recordings makes all of them new.
+  // A change to what the manifest says of all its recordings makes all of them new.
   nlohmann::ordered_json json = Json(manifest_);
   json["length_unit"] = "cm";
   WriteText("manifest.json", json.dump(1));
   for (const std::string& id : Ids(Batch(plan, {"--list"}).out)) EXPECT_EQ(changed.count(id), 0u);
 }
 
-// What the workflow of apps/workflow asks for: where each job's files go, and the table alone.
+// The requests of the workflow of apps/workflow: where each job's files go, and the table alone.
 TEST_F(BatchTest, ListedFoldersAreTheJobsAndGatheringRunsNothing) {
   const std::string plan = Plan("group_by = \"subject\"", {{"a, b", ""}});
   const std::vector<std::string> list = Lines(Batch(plan, {"--list"}).out);

@@ -1,4 +1,5 @@
-// What all executables share: help, version, flag files, exit codes, what goes to which stream.
+// The behaviour that all executables share: help, version, flag files, exit codes, output on both
+// streams.
 #include <gtest/gtest.h>
 
 #include <algorithm>

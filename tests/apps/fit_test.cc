@@ -141,7 +141,7 @@ TEST_F(FitAppTest, AdviceRepeatsTheVeryFit) {
   ASSERT_NE(begin, std::string::npos) << out;
   Words again = ShellWords(out.substr(begin, out.find('\n', begin + 1) - begin));
   again.erase(again.begin());
-  again.push_back("--leave_out=" + id_);  // what the advice changed
+  again.push_back("--leave_out=" + id_);  // the flag that the advice changed
   again.push_back("--model_out=" + Path("second.json"));
   Succeeded(RunApp("pushid-fit", again));
   nlohmann::ordered_json a = Json(first), b = Json(Path("second.json"));
@@ -177,7 +177,7 @@ TEST_F(FitAppTest, WhatIsLeftOutIsNotRead) {
 TEST_F(FitAppTest, AReplicaSaysSo) {
   EXPECT_TRUE(Contains(RunApp("pushid-fit", {Recordings(), "--replica=60", "--details"}).out,
                        "drawn with replacement, as replica 60 of a bootstrap"));
-  // Which is no frame rate.
+  // A value that is no frame rate.
   EXPECT_EQ(RunApp("pushid-fit", {Recordings(), "--resample=60"}).exit_code, 1);
 }
 

@@ -131,7 +131,7 @@ TEST_F(SmallDiskTest, AFolderWithoutWritingRightsIsNamed) {
                       {Path("closed/m.json"), "Permission denied"}));
 }
 
-// What a full disk swallows must not look done.
+// Output that a full disk swallows must not look done.
 TEST_F(SmallDiskTest, AResultThatCannotBePrintedIsAFailure) {
   const std::string fit = std::string(PUSHID_BIN_DIR) + "/pushid-fit";
   const AppRun run =
@@ -156,7 +156,7 @@ TEST_F(SmallDiskTest, ABatchGoesOnWhenThereIsSpaceAgain) {
   }
   fs::remove(Path("disk/filler"));
   const AppRun again = Succeeded(Batch(plan, {"--jobs=2"}));
-  EXPECT_FALSE(Contains(again.out, " 0 done before")) << again.out;  // what was done is kept
+  EXPECT_FALSE(Contains(again.out, " 0 done before")) << again.out;  // finished jobs are kept
   EXPECT_EQ(Table("disk/out"), Table("whole"));
 }
 

@@ -29,7 +29,7 @@ std::string ReadFile(const fs::path& path) {
   return text.str();
 }
 
-// Of the project: what was built is left out.
+// Files of the project; built ones are left out.
 std::vector<fs::path> Readmes() {
   std::vector<fs::path> found = {kSource / "README.md"};
   for (const char* room : {"apps", "ident", "residuals", "datasets", "models", "tests"}) {
@@ -47,7 +47,7 @@ void ForEachMatch(const std::string& text, const std::regex& expression, Visit v
   for (std::sregex_iterator i(text.begin(), text.end(), expression), end; i != end; ++i) visit(*i);
 }
 
-// What stands between <!-- name --> and the next <!-- end -->; how many such blocks there are.
+// The text between <!-- name --> and the next <!-- end -->; how many such blocks there are.
 std::vector<std::string> Blocks(const std::string& text, const std::string& name) {
   const std::string marker = "<!-- " + name + " -->\n";
   std::vector<std::string> blocks;

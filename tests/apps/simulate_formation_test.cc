@@ -87,7 +87,7 @@ TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
   EXPECT_EQ(text.find("<svg"), 0u);
   EXPECT_TRUE(Contains(text, "4 people in a line, 0.42 m apart; 12 N s at 0 s on person 0"));
   EXPECT_EQ(text.substr(text.size() - 7), "</svg>\n");
-  // What was written is a recording that the model predicts exactly.
+  // The written motion is a recording that the model predicts exactly.
   const AppRun scores =
       Succeeded(RunApp("pushid-evaluate", {model_, "--recordings=" + Path("line/manifest.json"),
                                            "--json_out=" + Path("scores.json")}));
@@ -150,7 +150,7 @@ TEST_F(SimulateFormationTest, TenRecordedPeopleInALine) {
       Refused(Simulate({"--formation=line", "--recordings=" + Path("none.json")}), {"none.json"}));
 }
 
-// Those of the fit, who stood in its recordings, and pushes as they were there.
+// The fit's people, who stood in its recordings, and pushes as they were there.
 TEST_F(SimulateFormationTest, WithoutRecordingsTheFitsPeopleStandThere) {
   const nlohmann::ordered_json range = Json(alone_)["push_range"];
   ASSERT_GE(range["people"].size(), 2u);

@@ -230,7 +230,8 @@ TEST(ResultJson, DamageIsNamed) {
   json = good;
   json["uncertainty"]["covariance_fitted_scale"][1] = Json::array({1.0});
   EXPECT_TRUE(Contains(message(json), "damaged"));
-  // What parts of the file say together is wrong at an entry, not at the part that was read last.
+  // A contradiction between parts of the file is reported at an entry, not at the part that was
+  // read last.
   json = good;
   json["fit"]["best_start"] = 7;
   EXPECT_TRUE(Contains(message(json), "at 'fit/best_start'"));

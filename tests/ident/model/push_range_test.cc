@@ -110,7 +110,7 @@ TEST(PushRange, WarnsOfPushesFromWhereNoneCame) {
       << reverse[0];
 }
 
-// What a formation takes of a fit, and what it is warned of.
+// A formation takes people and pushes from a fit, and warns beyond them.
 TEST(PushRange, HoldsThePeopleAndTheUsualPush) {
   IdentifiedModel model = Model();
   std::vector<PendulumRecording> fitted = {PushedPerson("a", PushKind::kExternal, 20, 60.0),

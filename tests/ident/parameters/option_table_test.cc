@@ -38,7 +38,7 @@ TEST(OptionTable, NamesAndPlacesAreTheirOwn) {
   }
 }
 
-// What a row says of the defaults can be said to it.
+// A row reads the words that it gives for the defaults.
 TEST(OptionTable, TextsReadBack) {
   const FitOptions defaults;
   for (const FitOptionRow& row : FitOptionRows()) {

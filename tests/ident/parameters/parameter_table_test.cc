@@ -196,7 +196,7 @@ TEST(TableEdits, BadInputIsNamed) {
            Case{{"mu=nan", "", "", "", ""}, "no number"},
            Case{{"mu=1e9", "", "", "", ""}, "mu = 1e+09 lies outside its bounds [-2000, 2000]"},
            Case{{"", "Kp_theta=-3", "", "", ""}, "Kp_theta = -3 lies outside"},
-           // What divides is not zero, fixed or not.
+           // A divisor is not zero, fixed or not.
            Case{{"support_back=0", "", "", "", ""}, "support_back = 0 lies outside"},
            Case{{"", "", "", "step_onset=0", ""}, "step_onset = 0 lies outside"},
            Case{{"", "", "mu:3", "", ""}, "--prior: 'mu:3' is not name:mean:sigma"},
