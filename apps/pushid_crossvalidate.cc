@@ -24,7 +24,6 @@
 #include "ident/prediction/futures.h"
 #include "ident/problem/folds.h"
 #include "ident/validation/crossvalidation.h"
-#include "ident/validation/scores_json.h"
 #include "ident/validation/scores_report.h"
 
 DEFINE_string(scheme, pushid::NameOf(pushid::FoldScheme::kStratified),

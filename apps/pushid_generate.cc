@@ -31,7 +31,7 @@
 #include "ident/model/model_json.h"
 #include "ident/model/model_rollout.h"
 #include "ident/problem/parallel.h"
-#include "ident/validation/scores_json.h"
+#include "ident/validation/scores_report.h"
 
 namespace {
 

@@ -34,6 +34,7 @@
 
 #include "datasets/files/error.h"
 #include "datasets/manifest/manifest.h"
+#include "ident/prediction/evaluation.h"
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {

@@ -22,7 +22,7 @@
 #include "ident/model/model_json.h"
 #include "ident/parameters/json_archive.h"
 #include "ident/validation/crossvalidation.h"
-#include "ident/validation/scores_json.h"
+#include "ident/validation/scores_report.h"
 
 namespace pushid {
 namespace {
