@@ -9,7 +9,6 @@
 #include "ident/bodies/body_recording.h"
 #include "ident/problem/folds.h"
 #include "ident/validation/crossvalidation.h"
-#include "ident/validation/scores_json.h"
 #include "ident/validation/scores_report.h"
 
 DEFINE_string(scheme, pushid::NameOf(pushid::FoldScheme::kStratified),

@@ -11,7 +11,6 @@
 #include "ident/parameters/presets.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"
-#include "ident/validation/scores_json.h"
 #include "ident/validation/scores_report.h"
 
 DEFINE_string(group_by, pushid::LabelKeysText(pushid::UsualGroups()),

@@ -180,7 +180,7 @@ std::vector<Pose> PlaceFlaggedPeople(const IdentifiedModel& model, Scene* scene)
   options.keep_all_joints = true;
   const std::vector<Recording> recordings = OrFail(LoadRecordings(FLAGS_recordings, options));
   const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings));
-  return PlacePeople(DistinctPeople(bodies), scene);
+  return PlacePeople(bodies, scene);
 }
 
 // "10 people in a line, 0.45 m apart".

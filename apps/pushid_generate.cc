@@ -16,7 +16,8 @@
 #include "ident/model/identified_model.h"
 #include "ident/model/model_json.h"
 #include "ident/model/model_rollout.h"
-#include "ident/validation/scores_json.h"
+#include "ident/problem/parallel.h"
+#include "ident/validation/scores_report.h"
 
 namespace {
 

@@ -185,7 +185,7 @@ MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& reco
     throw Error{"recording " + recording.id + " has fewer than " + std::to_string(kSmoothing) +
                 " frames, over which a push is smoothed"};
   }
-  const PushWindow window = OrFail(PushWindowFrom(flags.window, recording, options));
+  const PushWindow window = OrFail(DetectPushWindow(recording, options, flags.window));
   const EstimatedPush push = OrFail(EstimatePush(recording, window, options));
   for (int t = window.start; t < window.end; ++t) {
     if (recording.Weight(FLAGS_person, t) > 0.0) continue;

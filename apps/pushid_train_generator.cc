@@ -7,7 +7,7 @@
 #include "ident/problem/folds.h"
 #include "ident/training/generator_training.h"
 #include "ident/training/restoration_training.h"
-#include "ident/validation/scores_json.h"
+#include "ident/validation/scores_report.h"
 
 namespace {
 

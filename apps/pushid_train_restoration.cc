@@ -8,7 +8,7 @@
 #include "ident/model/model_json.h"
 #include "ident/problem/folds.h"
 #include "ident/training/restoration_training.h"
-#include "ident/validation/scores_json.h"
+#include "ident/validation/scores_report.h"
 
 namespace {
 

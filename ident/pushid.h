@@ -71,7 +71,7 @@ inline MaybeError EstimateMissingPushes(std::vector<Recording>* recordings,
     PushEstimationOptions options;
     options.person = recording.pushed_person;
     options.smoothing_frames = 9;  // without it, 2 mm of marker noise make 600 N
-    const Result<PushWindow> window = PushWindowFrom({-1, -1}, (*pendulums)[i], options);
+    const Result<PushWindow> window = DetectPushWindow((*pendulums)[i], options);
     if (!window.ok()) return window.error();
     const Result<EstimatedPush> push = EstimatePush((*pendulums)[i], window.value(), options);
     if (!push.ok()) return push.error();

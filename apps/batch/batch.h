@@ -11,6 +11,7 @@
 
 #include "datasets/manifest/manifest.h"
 #include "ident/prediction/evaluation.h"
+#include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
 

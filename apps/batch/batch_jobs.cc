@@ -10,7 +10,7 @@
 #include "datasets/files/input_file.h"
 #include "ident/model/model_json.h"
 #include "ident/validation/crossvalidation.h"
-#include "ident/validation/scores_json.h"
+#include "ident/validation/scores_report.h"
 
 namespace pushid {
 namespace {

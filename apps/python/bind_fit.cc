@@ -18,7 +18,6 @@
 #include "ident/report/report_text.h"
 #include "ident/validation/crossvalidation.h"
 #include "ident/validation/experiment_design.h"
-#include "ident/validation/scores_json.h"
 #include "ident/validation/scores_report.h"
 
 namespace pushid {
@@ -315,24 +314,20 @@ void LearnForecastsOf(Model* model, int num_threads) {
 using Json = nlohmann::ordered_json;
 
 // A number for each name; none where there are none.
-Json ByName(const std::vector<std::string>& names, const std::vector<double>& numbers) {
-  Json json = Json::object();
-  for (size_t i = 0; i < std::min(names.size(), numbers.size()); ++i) {
-    json[names[i]] = NumberJson(numbers[i]);
-  }
-  return json;
-}
-
-Json PushesJson(const ExperimentDesign& design, const std::string& parameter) {
+Json PushesJson(const ExperimentDesign& design) {
   Json rows = Json::array();
-  for (const DesignRow& row : Unwrapped(RankedRows(design, parameter), Fault::kUsage)) {
+  for (const DesignRow& row : design.rows) {
+    Json ratios = Json::object();
+    for (size_t i = 0; i < design.parameters.size(); ++i) {
+      ratios[design.parameters[i].name] = NumberJson(row.error_ratio[i]);
+    }
     rows.push_back({{"direction_deg", row.push.direction_deg},
                     {"acceleration", row.push.acceleration},
                     {"height", row.push.height},
                     {"duration_s", row.push.duration_s},
                     {"mass_kg", row.push.mass_kg},
                     {"sensor", row.push.sensor},
-                    {"error_ratio", ByName(design.parameters, row.error_ratio)},
+                    {"error_ratio", std::move(ratios)},
                     {"mean_error_ratio", NumberJson(row.error_ratio.back())}});
   }
   return rows;
@@ -341,15 +336,17 @@ Json PushesJson(const ExperimentDesign& design, const std::string& parameter) {
 py::object DesignOf(const Model& model, const std::string& parameter) {
   const std::shared_ptr<const FittedTo> to = DataOf(model);
   const std::shared_ptr<const FittedModel> fitted = model.fitted;
-  const Result<ExperimentDesign> design =
+  Result<ExperimentDesign> design =
       WithoutGil([&] { return DesignExperiments(to->pendulums, fitted->fit); });
-  Json json = {{"text", Unwrapped(DesignText(design, parameter), Fault::kUsage)},
+  Json json = {{"text", Unwrapped(DesignText(parameter, &design), Fault::kUsage)},
                {"standard_error", Json::object()},
                {"pushes", Json::array()},
                {"no_push", design.ok() ? "" : design.error().message}};
   if (design.ok()) {
-    json["standard_error"] = ByName(design.value().parameters, design.value().standard_error);
-    json["pushes"] = PushesJson(design.value(), parameter);
+    for (const Estimate& e : design.value().parameters) {
+      json["standard_error"][e.name] = NumberJson(e.standard_error);
+    }
+    json["pushes"] = PushesJson(design.value());
   }
   return FromJson(json);
 }

@@ -102,10 +102,9 @@ Result<std::vector<HipPaths>> Drawn(const Model& model, const IdentifiedModel& i
   }
   const BandOptions options{samples, seed};
   const FitResult& fit = model.fitted->fit;
-  const auto sets = SampleParameters(fit, options);
-  if (!sets.ok()) return sets.error();
+  const std::vector<ParameterSet<double>> sets = SampleParameters(fit, options);
   return HipsOf(
-      DrawPaths(fit, sets.value(), ErrorPaths(fit, DataOf(model)->pendulums), seen, seed, frames));
+      DrawPaths(fit, sets, ErrorPaths(fit, DataOf(model)->pendulums), seen, seed, frames));
 }
 
 PendulumRecording PushedAs(const ChangedPushes& changed, const PendulumRecording& recorded,
@@ -274,10 +273,10 @@ void AddSummaries(const FormationRun& run, const WaveBands& waves, py::dict* dic
     onset_band.append(band.moved > 0.0 ? py::object(py::make_tuple(band.from, band.to))
                                        : py::object(py::none()));
   }
-  (*dict)["speed"] = Reshaped(
-      TableArray(run.num_frames(), run.num_people(), 1,
-                 [&](int t, int n) { return std::array<double, 1>{SignedHipSpeed(run, n, t)}; }),
-      {run.num_frames(), run.num_people()});
+  (*dict)["speed"] =
+      Reshaped(TableArray(run.num_frames(), run.num_people(), 1,
+                          [&](int t, int n) { return std::array<double, 1>{HipSpeed(run, n, t)}; }),
+               {run.num_frames(), run.num_people()});
   (*dict)["onset_s"] = onset;
   (*dict)["displacement"] = displacement;
   (*dict)["outcome"] = outcome;

@@ -219,7 +219,7 @@ py::tuple EstimatePushOf(const SharedRecording& recording, int person, int first
   Check(ParseInitialVelocity("initial_velocity", initial_velocity, &options.initial_velocity),
         Fault::kUsage);
   const PushWindow window =
-      Unwrapped(PushWindowFrom({first_frame, end_frame}, seen, options), Fault::kData);
+      Unwrapped(DetectPushWindow(seen, options, {first_frame, end_frame}), Fault::kData);
   const EstimatedPush push = Unwrapped(EstimatePush(seen, window, options), Fault::kData);
   return py::make_tuple(RowsArray(push.push.force), window.start, NameOf(push.kind));
 }

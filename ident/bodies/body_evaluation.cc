@@ -9,7 +9,6 @@
 
 #include "ident/model/model_rollout.h"
 #include "ident/prediction/online_predictor.h"
-#include "ident/validation/scores_json.h"
 #include "ident/validation/scores_report.h"
 #include "models/learned_terms.h"
 

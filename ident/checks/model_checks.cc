@@ -1,10 +1,8 @@
-// ident: checks of a model, one after the other.
 #include "ident/checks/model_checks.h"
 
 #include <algorithm>
 
 #include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "ident/fit/fit.h"
 #include "ident/problem/behaviour.h"
 #include "ident/problem/fit_problem.h"
@@ -20,17 +18,12 @@ Error NotAsFitted(const std::string& id, const std::string& what) {
   return Error{"recording " + id + " " + what};
 }
 
-// The fit without what was put in beside its recordings, by the same weights.
-FitOptions OfDataAlone(FitOptions options) {
-  for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
-  options.settling_weight = 0.0;
-  return options;
-}
-
 void ClassifyByDataAlone(const FitProblem& with, const FitPoint& estimate,
                          const std::vector<std::string>& names, int num_threads,
                          const JobProgress& progress, std::vector<Profile>* profiles) {
-  const FitOptions options = OfDataAlone(with.options());
+  FitOptions options = with.options();  // without what was put in beside the recordings
+  for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
+  options.settling_weight = 0.0;
   const FitProblem alone(with.recordings(), options);
   const double put_in = CostAt(with.WithoutRecordings(), estimate);
   if (CostAt(alone.WithoutRecordings(), estimate) == put_in) return;
@@ -166,10 +159,10 @@ Result<Screen> CheckScreen(const std::vector<PendulumRecording>& recordings,
     screen.paragraphs.push_back(ForecastText(*model.fit.forecasts));
   }
   if (checks.design.empty()) return screen;
-  const Result<std::string> design =
-      DesignText(DesignExperiments(recordings, model.fit), checks.design);
-  if (!design.ok()) return Error{"--design: " + design.error().message};
-  screen.paragraphs.push_back(design.value());
+  Result<ExperimentDesign> design = DesignExperiments(recordings, model.fit);
+  const Result<std::string> text = DesignText(checks.design, &design);
+  if (!text.ok()) return Error{"--design: " + text.error().message};
+  screen.paragraphs.push_back(text.value());
   return screen;
 }
 

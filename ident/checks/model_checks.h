@@ -20,7 +20,7 @@ struct ModelChecks {
   std::string design;  // a parameter, or all; empty: none
   int num_threads = 1;
 
-  // Whether the checks add to the model; a design is only printed.
+  // True where the checks add to the model; a design is only printed.
   bool Adds() const {
     return !profile.empty() || bootstrap.replicas > 0 || horizon_check || learn_forecasts;
   }
@@ -48,7 +48,7 @@ MaybeError AddChecks(const std::vector<PendulumRecording>& recordings, const Mod
                      const std::function<JobProgress(const std::string&)>& progress,
                      FittedModel* model);
 
-// What the checks found, with forecasts and design, which the model does not keep.
+// The results of the checks, with forecasts and design, which the model does not keep.
 Result<Screen> CheckScreen(const std::vector<PendulumRecording>& recordings,
                            const ModelChecks& checks, const FittedModel& model);
 

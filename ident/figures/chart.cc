@@ -1,4 +1,3 @@
-// ident: drawing panels, and panels with their legend as pictures.
 #include "ident/figures/chart.h"
 
 #include <algorithm>
@@ -107,12 +106,17 @@ class Panel {
     for (const ChartBar& bar : chart_.bars) {
       const double from = Inside(bar.from), to = Inside(bar.to), y = y_(bar.row);
       const double height = chart_.bar * chart_.row;
-      svg_.Rect({std::min(from, to), y - 0.5 * height, std::abs(to - from), height}, bar.look,
-                bar.tooltip);
+      svg_.Rect({std::min(from, to), y - 0.5 * height, std::abs(to - from), height}, bar.look);
     }
     for (double level : chart_.levels) svg_.Line(left_, y_(level), right_, y_(level), kLimitLook);
     for (double mark : chart_.marks) svg_.Line(x_(mark), top_, x_(mark), bottom_, kMarkLook);
-    for (const ChartLine& line : chart_.lines) Line(line);
+    for (const ChartLine& line : chart_.lines) {
+      const ChartPoints placed = Placed(line.points);
+      for (const auto& [x, y] : placed) {
+        if (line.dots) svg_.Circle(x, y, 3.0, line.look);
+      }
+      if (!line.dots) svg_.Polyline(placed, line.look);
+    }
     for (const ChartLabel& label : chart_.labels) {
       svg_.Text(x_(label.x), y_(label.y) + 3.5, label.text, label.look + " small middle");
     }
@@ -151,15 +155,6 @@ class Panel {
                           std::clamp(y_(y), top_ - 2.0, bottom_ + 2.0));
     }
     return placed;
-  }
-
-  void Line(const ChartLine& line) {
-    const ChartPoints placed = Placed(line.points);
-    if (line.dots) {
-      for (const auto& [x, y] : placed) svg_.Circle(x, y, 3.0, line.look);
-    } else {
-      svg_.Polyline(placed, line.look);
-    }
   }
 
   // A title that is too long for its place above the plot begins at the panel's edge.
@@ -279,6 +274,16 @@ class Panel {
   SvgScale x_, y_;
   SvgPicture& svg_;
 };
+
+// Least share of its wanted width to which a panel shrinks before fewer stand side by side.
+constexpr double kNarrowest = 0.65;
+constexpr double kLegendRow = 18, kHeading = 22;
+
+// Width of an entry's line, its name and the room after it.
+double EntryWidth(const LegendEntry& entry) {
+  return 44 + 6.6 * static_cast<double>(entry.name.size());
+}
+
 }  // namespace
 
 double HeightOf(const Chart& chart, double width) {
@@ -293,39 +298,6 @@ double HeightOf(const Chart& chart, double width) {
   const Margins margins(chart, width);
   return margins.top + margins.bottom + chart.row * static_cast<double>(chart.y_categories.size());
 }
-
-void DrawChart(const Chart& chart, const SvgBox& box, SvgPicture* svg) {
-  Panel(chart, box, svg).Draw();
-}
-
-namespace {
-
-// Least share of its wanted width to which a panel shrinks before fewer stand side by side.
-constexpr double kNarrowest = 0.65;
-constexpr double kLegendRow = 18, kHeading = 22;
-
-// Width of an entry's line, its name and the room after it.
-double EntryWidth(const LegendEntry& entry) {
-  return 44 + 6.6 * static_cast<double>(entry.name.size());
-}
-
-// Splits the entries into lines, so that none is wider than the picture.
-std::vector<std::vector<LegendEntry>> LegendLines(const std::vector<LegendEntry>& entries,
-                                                  double width) {
-  std::vector<std::vector<LegendEntry>> lines;
-  double used = width;
-  for (const LegendEntry& entry : entries) {
-    if (used + EntryWidth(entry) > width) {
-      lines.emplace_back();
-      used = 0.0;
-    }
-    lines.back().push_back(entry);
-    used += EntryWidth(entry);
-  }
-  return lines;
-}
-
-}  // namespace
 
 double LegendWidth(const std::vector<LegendEntry>& entries) {
   double width = 0.0;
@@ -350,7 +322,7 @@ void DrawLegend(const std::vector<LegendEntry>& entries, double x, double y, Svg
 SvgPicture DrawPanel(const Chart& chart) {
   const double height = HeightOf(chart, chart.width);
   SvgPicture svg(chart.width, height, chart.title);
-  DrawChart(chart, {0, 0, chart.width, height}, &svg);
+  Panel(chart, {0, 0, chart.width, height}, &svg).Draw();
   return svg;
 }
 
@@ -361,7 +333,12 @@ SvgPicture DrawFigure(const Figure& figure, double width, const std::string& tit
   const size_t columns = std::clamp<size_t>(static_cast<size_t>(width / (kNarrowest * widest)), 1,
                                             std::max<size_t>(1, panels.size()));
   const double wide = width / static_cast<double>(columns);
-  const auto legend = LegendLines(figure.legend, width - 20);
+  std::vector<std::vector<LegendEntry>> legend;  // lines, none wider than the picture
+  for (const LegendEntry& entry : figure.legend) {
+    const bool full = legend.empty() || LegendWidth(legend.back()) + EntryWidth(entry) > width - 20;
+    if (full) legend.emplace_back();
+    legend.back().push_back(entry);
+  }
   const double top =
       (figure.heading.empty() ? 0 : kHeading) + kLegendRow * static_cast<double>(legend.size());
   std::vector<double> tops = {top};
@@ -377,7 +354,7 @@ SvgPicture DrawFigure(const Figure& figure, double width, const std::string& tit
   }
   for (size_t i = 0; i < panels.size(); ++i) {
     const double x = wide * static_cast<double>(i % columns);
-    DrawChart(panels[i], {x, tops[i / columns], wide, HeightOf(panels[i], wide)}, &svg);
+    Panel(panels[i], {x, tops[i / columns], wide, HeightOf(panels[i], wide)}, &svg).Draw();
   }
   return svg;
 }

@@ -50,7 +50,7 @@ struct ChartLane {
 // Along x, in a row of y_categories.
 struct ChartBar {
   double row = 0.0, from = 0.0, to = 0.0;
-  std::string look, tooltip;
+  std::string look;
 };
 
 // A label in the plot, centred there.
@@ -103,8 +103,6 @@ struct Figure {
 
 // Height of a panel that is drawn so wide.
 double HeightOf(const Chart& chart, double width);
-// Draws a chart; axes and labels lie within the box.
-void DrawChart(const Chart& chart, const SvgBox& box, SvgPicture* svg);
 
 // Draws a panel as a picture of its own, as wide as wanted.
 SvgPicture DrawPanel(const Chart& chart);

@@ -1,4 +1,3 @@
-// ident: the page around a moving figure.
 #include "ident/figures/moving_page.h"
 
 #include <nlohmann/json.hpp>

@@ -10,7 +10,7 @@
 namespace pushid {
 
 struct MovingPage {
-  std::string described;    // what the canvas shows, for those who cannot see it
+  std::string described;    // a description of the canvas for people who cannot see it
   std::string light, dark;  // CSS variables of the caller's colours: "--recorded:#777"
   std::string choices;      // check boxes; each change draws anew
   // An array of what can be chosen, each with `title`, `dt` (s) and `frames`.

@@ -1,11 +1,12 @@
-// ident: SVG text.
 #include "ident/figures/svg.h"
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <initializer_list>
 
 namespace pushid {
 namespace {
@@ -58,40 +59,36 @@ class PathData {
  public:
   void MoveTo(double x, double y) {
     text_ += 'M';
-    relative_ = false;
     x_ = y_ = 0;
     Step(x, y);
+    moved_ = true;
   }
   void LineTo(double x, double y) {
-    if (!relative_) text_ += 'l';
-    const bool first = !relative_;
-    relative_ = true;
-    Step(x, y, first);
+    if (moved_) text_ += 'l';
+    moved_ = false;
+    Step(x, y);
   }
   const std::string& text() const { return text_; }
 
  private:
-  void Step(double x, double y, bool first = true) {
+  void Step(double x, double y) {
     const long to_x = std::lround(10.0 * x), to_y = std::lround(10.0 * y);
-    Append(to_x - x_, first);
-    Append(to_y - y_, false);
+    Append(to_x - x_);
+    Append(to_y - y_);
     x_ = to_x;
     y_ = to_y;
   }
-  // A minus sign separates numbers as well as a space does.
-  void Append(long tenths, bool first) {
-    if (tenths < 0) {
-      text_ += '-';
-    } else if (!first) {
-      text_ += ' ';
-    }
+  // A letter or a minus sign separates numbers as well as a space does.
+  void Append(long tenths) {
+    const bool first = std::isalpha(static_cast<unsigned char>(text_.back()));
+    text_ += tenths < 0 ? "-" : first ? "" : " ";
     const long size = std::labs(tenths);
     if (size >= 10 || size == 0) text_ += std::to_string(size / 10);
     if (size % 10 != 0) (text_ += '.') += static_cast<char>('0' + size % 10);
   }
 
   std::string text_;
-  bool relative_ = false;
+  bool moved_ = false;  // by the last command
   long x_ = 0, y_ = 0;
 };
 
@@ -108,6 +105,32 @@ std::string WithMinusSigns(std::string_view text) {
     }
   }
   return with;
+}
+
+// Attributes of numbers.
+std::string Numbers(std::initializer_list<std::pair<const char*, double>> numbers) {
+  std::string attributes;
+  for (const auto& [name, value] : numbers) {
+    attributes += std::string(" ") + name + "=\"" + SvgNumber(value) + '"';
+  }
+  return attributes;
+}
+
+using Rgb = std::array<double, 3>;
+
+// Between stops of even distance; at in [0, 1], clamped.
+template <size_t N>
+std::string Blend(const std::array<Rgb, N>& stops, double at) {
+  const double place = std::clamp(at, 0.0, 1.0) * (N - 1);
+  const size_t low = std::min(static_cast<size_t>(place), N - 2);
+  std::array<int, 3> rgb{};
+  for (int i = 0; i < 3; ++i) {
+    const double from = stops[low][i], to = stops[low + 1][i];
+    rgb[i] = static_cast<int>(std::lround(from + (place - low) * (to - from)));
+  }
+  char text[32];
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+  return text;
 }
 
 }  // namespace
@@ -143,44 +166,25 @@ SvgPicture::SvgPicture(double width, double height, std::string_view title)
   Rect({0, 0, width, height}, "paper");
 }
 
-void SvgPicture::Open(std::string_view element,
-                      std::initializer_list<std::pair<const char*, double>> numbers) {
-  body_ += '<';
-  body_ += element;
-  for (const auto& [name, value] : numbers) {
-    body_ += std::string(" ") + name + "=\"" + SvgNumber(value) + '"';
-  }
-}
-
-void SvgPicture::Look(std::string_view look) {
+void SvgPicture::Element(const std::string& name, const std::string& before, std::string_view look,
+                         const std::string& after, const std::string& content) {
   const bool css = look.find(':') != std::string_view::npos;
-  body_ += (css ? " style=\"" : " class=\"") + EscapeXml(look) + '"';
+  body_ += "<" + name + before + (css ? " style=\"" : " class=\"") + EscapeXml(look) + '"' + after +
+           (content.empty() ? "/>\n" : ">" + content + "</" + name + ">\n");
 }
 
 void SvgPicture::Rect(const SvgBox& box, std::string_view look, std::string_view tooltip) {
-  Open("rect", {{"x", box.x}, {"y", box.y}, {"width", box.width}, {"height", box.height}});
-  Look(look);
-  body_ += tooltip.empty() ? "/>\n" : "><title>" + EscapeXml(tooltip) + "</title></rect>\n";
+  Element("rect",
+          Numbers({{"x", box.x}, {"y", box.y}, {"width", box.width}, {"height", box.height}}), look,
+          "", tooltip.empty() ? "" : "<title>" + EscapeXml(tooltip) + "</title>");
 }
 
 void SvgPicture::Line(double x1, double y1, double x2, double y2, std::string_view look) {
-  Open("line", {{"x1", x1}, {"y1", y1}, {"x2", x2}, {"y2", y2}});
-  Look(look);
-  body_ += "/>\n";
+  Element("line", Numbers({{"x1", x1}, {"y1", y1}, {"x2", x2}, {"y2", y2}}), look);
 }
 
 void SvgPicture::Circle(double x, double y, double radius, std::string_view look) {
-  Open("circle", {{"cx", x}, {"cy", y}, {"r", radius}});
-  Look(look);
-  body_ += "/>\n";
-}
-
-void SvgPicture::Path(std::string_view data, std::string_view look) {
-  Open("path");
-  Look(look);
-  body_ += " d=\"";
-  body_ += data;
-  body_ += "\"/>\n";
+  Element("circle", Numbers({{"cx", x}, {"cy", y}, {"r", radius}}), look);
 }
 
 void SvgPicture::Lines(const std::vector<SvgLine>& lines, std::string_view look) {
@@ -190,7 +194,7 @@ void SvgPicture::Lines(const std::vector<SvgLine>& lines, std::string_view look)
     data.MoveTo(line.x1, line.y1);
     data.LineTo(line.x2, line.y2);
   }
-  Path(data.text(), look);
+  Element("path", "", look, " d=\"" + data.text() + '"');
 }
 
 void SvgPicture::Polyline(const std::vector<std::pair<double, double>>& points,
@@ -204,24 +208,18 @@ void SvgPicture::Polyline(const std::vector<std::pair<double, double>>& points,
   for (size_t i = 1; i < points.size(); ++i) {
     if (kept[i]) data.LineTo(points[i].first, points[i].second);
   }
-  Path(data.text(), look);
+  Element("path", "", look, " d=\"" + data.text() + '"');
 }
 
 void SvgPicture::Text(double x, double y, std::string_view text, std::string_view look) {
-  TextAt(" x=\"" + SvgNumber(x) + "\" y=\"" + SvgNumber(y) + '"', text, look);
+  if (text.empty()) return;
+  Element("text", Numbers({{"x", x}, {"y", y}}), look, "", WithMinusSigns(EscapeXml(text)));
 }
 
 void SvgPicture::TextUp(double x, double y, std::string_view text, std::string_view look) {
-  TextAt(" transform=\"translate(" + SvgNumber(x) + ' ' + SvgNumber(y) + ")rotate(-90)\"", text,
-         look);
-}
-
-void SvgPicture::TextAt(const std::string& place, std::string_view text, std::string_view look) {
   if (text.empty()) return;
-  Open("text");
-  body_ += place;
-  Look(look);
-  body_ += '>' + WithMinusSigns(EscapeXml(text)) + "</text>\n";
+  Element("text", " transform=\"translate(" + SvgNumber(x) + ' ' + SvgNumber(y) + ")rotate(-90)\"",
+          look, "", WithMinusSigns(EscapeXml(text)));
 }
 
 std::string SvgPicture::ToString() const {
@@ -256,27 +254,6 @@ std::vector<double> SvgScale::Ticks(int wanted) const {
   }
   return ticks;
 }
-
-namespace {
-
-using Rgb = std::array<double, 3>;
-
-// Between stops of even distance; at in [0, 1], clamped.
-template <size_t N>
-std::string Blend(const std::array<Rgb, N>& stops, double at) {
-  const double place = std::clamp(at, 0.0, 1.0) * (N - 1);
-  const size_t low = std::min(static_cast<size_t>(place), N - 2);
-  std::array<int, 3> rgb{};
-  for (int i = 0; i < 3; ++i) {
-    const double from = stops[low][i], to = stops[low + 1][i];
-    rgb[i] = static_cast<int>(std::lround(from + (place - low) * (to - from)));
-  }
-  char text[32];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
-  return text;
-}
-
-}  // namespace
 
 std::string ColourOf(double fraction) {
   static constexpr std::array<Rgb, 6> kStops = {

@@ -9,7 +9,6 @@
 // reader's light or dark setting; colours of data are given in full. Texts are escaped.
 #pragma once
 
-#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -60,11 +59,9 @@ class SvgPicture {
 
  private:
   std::string Drawn(const std::string& style) const;
-  void TextAt(const std::string& place, std::string_view text, std::string_view look);
-  void Open(std::string_view element,
-            std::initializer_list<std::pair<const char*, double>> numbers = {});
-  void Look(std::string_view look);
-  void Path(std::string_view data, std::string_view look);
+  // Attributes before and after the look, and what is in the element.
+  void Element(const std::string& name, const std::string& before, std::string_view look,
+               const std::string& after = "", const std::string& content = "");
 
   double width_, height_;
   std::string body_;

@@ -1,4 +1,3 @@
-// ident: padding columns.
 #include "ident/figures/text_table.h"
 
 #include <algorithm>
@@ -55,8 +54,6 @@ void TextTable::Add(std::initializer_list<TableCell> row) {
   for (const TableCell& cell : row) rows_.back().push_back(cell.text);
 }
 
-void TextTable::AddGap() { rows_.emplace_back(); }
-
 // Columns that do not fit beside the others follow below, beside the first column again; long words
 // are broken.
 std::string TextTable::ToString() const {
@@ -91,17 +88,6 @@ std::string WithUnit(const std::string& name, const std::string& unit) {
 
 std::string WithError(double value, double error) {
   return Rounded(value, 3) + (error > 0.0 ? " +- " + Rounded(error, 2) : "");
-}
-
-std::string Metric::Title() const {
-  std::string title = std::string(name) + " " + unit;
-  std::replace(title.begin(), title.end(), '_', ' ');
-  return title;
-}
-
-std::string Metric::Text(double value, int digits) const {
-  std::string text = Title();
-  return text.insert(text.rfind(' '), " " + Rounded(value, digits));
 }
 
 }  // namespace pushid

@@ -1,5 +1,4 @@
-// ident: tables of text, columns padded, numbers to the right; how a column and a metric are
-// called.
+// ident: tables of text, columns padded, numbers to the right; how a column is called.
 //
 // One table serves a terminal (ToString), a page and a CSV file (report/document.h).
 #pragma once
@@ -37,15 +36,14 @@ class TextTable {
   // A table whose first column is words and whose others are numbers.
   static TextTable OfNumbers(std::vector<std::string> header);
 
+  // An empty row is a blank line.
   void Add(std::vector<std::string> row);
   void Add(std::initializer_list<TableCell> row);
-  // A blank line between groups.
-  void AddGap();
-  // Whether there is only a header.
+  // True where there is only a header.
   bool empty() const { return rows_.size() < 2; }
   std::string ToString() const;
 
-  // All rows, the header first; a gap is an empty row.
+  // The header, then all rows.
   const std::vector<std::vector<std::string>>& rows() const { return rows_; }
   bool IsWords(size_t column) const { return left_[column]; }
 
@@ -59,19 +57,5 @@ std::string WithError(double value, double error);
 
 // The head of a column: "mu, N s/m", and the name alone where the unit is "1".
 std::string WithUnit(const std::string& name, const std::string& unit);
-
-// Names of a prediction's metric in files and tables.
-struct Metric {
-  const char* name;  // "hipADE"
-  const char* unit;  // "m"
-
-  // The key in files: "hipADE_m".
-  std::string Key() const { return std::string(name) + "_" + unit; }
-  std::string ErrorKey() const { return std::string(name) + "_standard_error_" + unit; }
-  // The head of a column: "hipADE m".
-  std::string Title() const;
-  // The metric in a sentence: "hipADE 0.1 m".
-  std::string Text(double value, int digits) const;
-};
 
 }  // namespace pushid

@@ -1,4 +1,3 @@
-// ident: files of a formation, the picture of its wave, and feet from above.
 #include "ident/formations/formation_files.h"
 
 #include <Eigen/Geometry>
@@ -27,14 +26,14 @@ double InUnit(double metres) { return RowOf(kUnit).per_metre * metres; }
 
 double Degrees(double radians) { return radians * 180.0 / M_PI; }
 
-BvhSkeleton PendulumSkeleton(const ScenePerson& person) {
-  const double rod = InUnit(person.body.rod_length);
-  const Eigen::Vector2d half = 0.5 * person.start.feet.apart;
-  const double x = InUnit(half.x()), y = InUnit(half.y());
+BvhMotion PendulumMotion(const FormationRun& run, int person) {
+  const Body& body = run.recording.scene.people[person].body;
+  const Eigen::Vector2d half = 0.5 * run.recording.scene.people[person].start.feet.apart;
+  const double rod = InUnit(body.rod_length), x = InUnit(half.x()), y = InUnit(half.y());
   const std::vector<BvhChannel> rotations = {BvhChannel::kXrotation, BvhChannel::kYrotation,
                                              BvhChannel::kZrotation};
-  BvhSkeleton skeleton;
-  skeleton.joints = {
+  BvhMotion motion;
+  motion.skeleton.joints = {
       {"Cart", -1, {0, 0, 0}, DefaultBvhChannels(true), {}},
       {"Rod", 0, {0, 0, 0}, rotations, {}},
       // A mark above the hip, so that viewers draw more than a point.
@@ -42,13 +41,6 @@ BvhSkeleton PendulumSkeleton(const ScenePerson& person) {
       {"LeftAnkle", 0, {x, y, 0}, DefaultBvhChannels(false), {{0, 0, 0}}},
       {"RightAnkle", 0, {-x, -y, 0}, DefaultBvhChannels(false), {{0, 0, 0}}},
   };
-  return skeleton;
-}
-
-BvhMotion PendulumMotion(const FormationRun& run, int person) {
-  const Body& body = run.recording.scene.people[person].body;
-  BvhMotion motion;
-  motion.skeleton = PendulumSkeleton(run.recording.scene.people[person]);
   motion.frame_time_s = run.recording.scene.dt;
   for (int t = 0; t < run.num_frames(); ++t) {
     const Vector4<double>& q = run.prediction.path.At(t, person).q;
@@ -101,11 +93,11 @@ std::string LevelLook(int level) {
 
 // Frames of the same level are one bar. Speeds are negative of who goes back more than aside.
 void AddSpeeds(const FormationRun& run, int person, double full, Chart* chart) {
-  const auto level = [&](int t) { return LevelOf(SignedHipSpeed(run, person, t), full); };
+  const auto level = [&](int t) { return LevelOf(HipSpeed(run, person, t), full); };
   for (int begin = 0, end = 0; begin < run.num_frames(); begin = end) {
     while (end < run.num_frames() && level(end) == level(begin)) ++end;
     chart->bars.push_back({static_cast<double>(person), run.Seconds(begin), run.Seconds(end),
-                           LevelLook(level(begin)), ""});
+                           LevelLook(level(begin))});
   }
 }
 
@@ -158,25 +150,18 @@ std::vector<FeetTrack> TracksOf(const FormationRun& run) {
   return tracks;
 }
 
-// An ellipse, closed.
-ChartPoints SoleOutline(const Eigen::Vector2d& ankle, double facing) {
-  const Eigen::Rotation2Dd turn(facing);
-  ChartPoints outline;
+// The landing's time in a predicted sole, and beside a recorded one, where feet do not meet.
+void AddSole(const FormationRun& run, const Footprint& print, bool predicted, Chart* chart) {
+  const Eigen::Rotation2Dd turn(run.recording.facing);
+  ChartPoints outline;  // an ellipse, closed
   for (int i = 0; i <= kCornersOfSole; ++i) {
     const double angle = 2.0 * M_PI * i / kCornersOfSole;
     const Eigen::Vector2d corner =
-        ankle + turn * Eigen::Vector2d(0.5 * ((kSoleBefore - kSoleBehind) +
-                                              (kSoleBefore + kSoleBehind) * std::cos(angle)),
-                                       0.5 * kSoleWidth * std::sin(angle));
+        print.place + turn * Eigen::Vector2d(0.5 * ((kSoleBefore - kSoleBehind) +
+                                                    (kSoleBefore + kSoleBehind) * std::cos(angle)),
+                                             0.5 * kSoleWidth * std::sin(angle));
     outline.emplace_back(corner[0], corner[1]);
   }
-  return outline;
-}
-
-// The landing's time in a predicted sole, and beside a recorded one, where feet do not meet.
-void AddSole(const FormationRun& run, const Footprint& print, bool predicted, Chart* chart) {
-  const double facing = run.recording.facing;
-  const ChartPoints outline = SoleOutline(print.place, facing);
   if (predicted) {
     chart->bands.push_back({outline, {}, kPredictedSoleLook});
   } else {
@@ -185,13 +170,13 @@ void AddSole(const FormationRun& run, const Footprint& print, bool predicted, Ch
   if (print.landing == 0) return;
   const double side = print.foot == Foot::kLeft ? 1.0 : -1.0;
   const Eigen::Vector2d at =
-      print.place +
-      Eigen::Rotation2Dd(facing) * Eigen::Vector2d(0.5 * (kSoleBefore - kSoleBehind),
-                                                   predicted ? 0.0 : 0.9 * side * kSoleWidth);
+      print.place + turn * Eigen::Vector2d(0.5 * (kSoleBefore - kSoleBehind),
+                                           predicted ? 0.0 : 0.9 * side * kSoleWidth);
   chart->labels.push_back({at[0], at[1], Rounded(run.Seconds(print.landing), 3) + " s", "ink"});
 }
 
-// Everything in it, with some air and a least size, and as wide as metres need.
+// Sets the limits so that all is in the map, with some air and a least size, as wide as metres
+// need.
 void FitMap(Chart* chart) {
   Eigen::Array2d low(INFINITY, INFINITY), high = -low;
   const auto see = [&](const ChartPoints& points) {
@@ -278,7 +263,7 @@ std::string WaveSvg(const FormationRun& run, const std::string& title,
   }
   for (const ScenePush& push : run.recording.scene.pushes) {
     chart.bars.push_back({static_cast<double>(push.person), run.Seconds(push.start_frame),
-                          run.Seconds(push.EndFrame()), kPushFrame, ""});
+                          run.Seconds(push.EndFrame()), kPushFrame});
   }
   Figure figure{{}, {chart}, title};
   for (double share : {-1.0, -0.25, 0.0, 0.25, 1.0}) {

@@ -1,4 +1,3 @@
-// ident: rollout of a formation and what it says about each person.
 #include "ident/formations/formation_run.h"
 
 #include <Eigen/Geometry>
@@ -23,25 +22,6 @@
 namespace pushid {
 namespace {
 
-// p00, p01, ...: names that sort in the order of the people.
-std::string PersonName(int person, int people) {
-  const std::string number = std::to_string(person);
-  const size_t width = std::to_string(std::max(10, people - 1)).size();
-  return "p" + std::string(width - number.size(), '0') + number;
-}
-
-PendulumRecording AsRecording(const Scene& scene) {
-  PendulumRecording recording;
-  recording.id = "formation";
-  recording.labels.Set(kSettingLabel, recording.id);
-  recording.scene = scene;
-  if (!scene.pushes.empty()) recording.pushed_person = scene.pushes.front().person;
-  for (int n = 0; n < scene.num_people(); ++n) {
-    recording.subject_ids.push_back(PersonName(n, scene.num_people()));
-  }
-  return recording;
-}
-
 Outcome Judge(const FormationRun& run, int person, int onset_frame) {
   const RolloutPath<double>& path = run.prediction.path;
   for (int t = 0; t < run.num_frames(); ++t) {
@@ -61,16 +41,112 @@ Outcome Judge(const FormationRun& run, int person, int onset_frame) {
   return settled ? Outcome::kSettled : Outcome::kSlow;
 }
 
-PersonSummary Summarize(const FormationRun& run, int person) {
-  const std::vector<Vector3<double>>& hip = run.prediction.hip[person];
-  PersonSummary summary;
-  for (int t = 0; t < run.num_frames(); ++t) {
-    summary.peak_speed = std::max(summary.peak_speed, HipSpeed(run, person, t));
+constexpr int kDraws = 60;
+constexpr double kLower = 0.05, kUpper = 0.95;
+
+// Onset frames of all people in each draw; none where its rollout left the model's domain.
+std::vector<std::vector<int>> DrawnOnsets(const FittedModel& model, const std::string& set,
+                                          const FormationRun& run) {
+  const bool replicas = model.bootstrap && !model.bootstrap->values.empty();
+  if (!replicas && model.fit.uncertainty.covariance.size() == 0) return {};
+  BandOptions options;
+  options.samples = kDraws;
+  if (replicas) options.bootstrap = &*model.bootstrap;
+  IdentifiedModel fitted = ModelOf(model.fit);
+  fitted.by_unit.clear();  // no person of a formation is one of the fit
+  std::vector<std::vector<int>> onsets;
+  for (const ParameterSet<double>& draw : SampleParameters(model.fit, options)) {
+    IdentifiedModel drawn = WithShared(fitted, draw);
+    if (SetValues(set, &drawn)) return {};
+    const Prediction prediction = Predict(drawn, run.recording, run.num_frames());
+    onsets.emplace_back();
+    if (!prediction.status.ok) continue;
+    for (const auto& hip : prediction.hip) onsets.back().push_back(OnsetFrame(hip));
   }
-  summary.onset_frame = OnsetFrame(hip);
-  summary.displacement = PushDirection(run.recording).dot((hip.back() - hip.front()).head<2>());
-  summary.outcome = Judge(run, person, summary.onset_frame);
-  return summary;
+  return onsets;
+}
+
+constexpr int kSpeedFrames = 6;
+
+// Horizontal, m, from the first that was seen; frames without the person are left out.
+struct Track {
+  std::vector<int> frames;
+  std::vector<Eigen::Vector2d> places;
+};
+
+Track TrackOf(const std::vector<Eigen::Vector3d>& positions, double metres) {
+  Track track;
+  for (size_t frame = 0; frame < positions.size(); ++frame) {
+    if (!positions[frame].head<2>().allFinite()) continue;
+    track.frames.push_back(static_cast<int>(frame));
+    track.places.push_back(metres * positions[frame].head<2>());
+  }
+  return track;
+}
+
+int OnsetOf(const Track& track) {
+  for (size_t i = 0; i < track.places.size(); ++i) {
+    if ((track.places[i] - track.places[0]).norm() >= kOnsetDistance) return track.frames[i];
+  }
+  return -1;
+}
+
+double PeakSpeedOf(const Track& track, const Eigen::Vector2d& way, double rate) {
+  double peak = 0.0;
+  for (size_t i = kSpeedFrames; i < track.places.size(); ++i) {
+    const double seconds = (track.frames[i] - track.frames[i - kSpeedFrames]) / rate;
+    peak = std::max(peak, way.dot(track.places[i] - track.places[i - kSpeedFrames]) / seconds);
+  }
+  return peak;
+}
+
+void AddSlowness(MeasuredWave* wave) {
+  std::vector<double> distance, onset;
+  for (const PersonInWave& person : wave->people) {
+    if (!person.onset_s) continue;
+    distance.push_back(person.distance);
+    onset.push_back(*person.onset_s);
+  }
+  wave->slowness = Slowness(distance, onset);
+  if (!wave->slowness) return;
+  const double s_mean = MeanOf(distance).mean, t_mean = MeanOf(onset).mean;
+  double squares = 0.0, left = 0.0;
+  for (size_t i = 0; i < distance.size(); ++i) {
+    const double s = distance[i] - s_mean;
+    squares += s * s;
+    left += std::pow(onset[i] - t_mean - *wave->slowness * s, 2);
+  }
+  const double freedom = static_cast<double>(distance.size()) - 2.0;
+  wave->error = std::sqrt(left / freedom / squares);
+  wave->quantile = StudentQuantile95(freedom);
+}
+
+// "0.75 m/s (95 %: 0.5 to 1.3, ...)"; or why the onsets give no speed.
+std::string SpeedOf(double slowness, double half_width, const std::string& from) {
+  const double slowest = slowness + half_width, fastest = slowness - half_width;
+  if (!(slowest > 0.0)) return "none: people farther away start earlier";
+  const std::string interval = fastest > 0.0
+                                   ? Rounded(1.0 / slowest, 3) + " to " + Rounded(1.0 / fastest, 3)
+                                   : "above " + Rounded(1.0 / slowest, 3);
+  const std::string ending = "95 %: " + interval + ", from " + from;
+  return slowness > 0.0 ? Rounded(1.0 / slowness, 3) + " m/s (" + ending + ")"
+                        : "it cannot be determined (" + ending + ")";
+}
+
+// Hips in m under the subjects' names; frames that do not count are not seen.
+PointMotion HipTrajectories(const Recording& recording) {
+  PointMotion motion;
+  motion.rate_hz = recording.fps;
+  for (const RecordedPerson& person : recording.people) {
+    motion.names.push_back(person.subject_id);
+    motion.positions.push_back(person.hip);
+    for (size_t frame = 0; frame < person.weight.size(); ++frame) {
+      if (person.weight[frame] > 0.0) continue;
+      motion.positions.back()[frame].setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  ChoosePoints({}, &motion);
+  return motion;
 }
 
 }  // namespace
@@ -104,28 +180,41 @@ std::vector<ForcePart> ActingParts(const FormationRun& run) {
 FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int num_frames,
                           const std::vector<std::string>& names) {
   FormationRun run;
-  run.recording = AsRecording(scene);
-  if (!names.empty()) run.recording.subject_ids = names;
+  PendulumRecording& recording = run.recording;
+  recording.id = "formation";
+  recording.labels.Set(kSettingLabel, recording.id);
+  recording.scene = scene;
+  if (!scene.pushes.empty()) recording.pushed_person = scene.pushes.front().person;
+  recording.subject_ids = names;
+  const size_t width = std::to_string(std::max(10, scene.num_people() - 1)).size();
+  for (int n = 0; n < scene.num_people() && names.empty(); ++n) {
+    std::string number = std::to_string(n);  // names sort in the order of the people
+    number.insert(0, width - number.size(), '0');
+    recording.subject_ids.push_back("p" + number);
+  }
   // People of a formation are no subjects of the fit.
   IdentifiedModel shared = model;
   shared.by_unit.clear();
-  run.prediction = Predict(shared, run.recording, num_frames);
+  run.prediction = Predict(shared, recording, num_frames);
   if (!run.prediction.status.ok) return run;
-  for (int n = 0; n < run.num_people(); ++n) run.summaries.push_back(Summarize(run, n));
+  for (int n = 0; n < run.num_people(); ++n) {
+    const HipPath& hip = run.prediction.hip[n];
+    PersonSummary& summary = run.summaries.emplace_back();
+    for (int t = 0; t < run.num_frames(); ++t) {
+      summary.peak_speed = std::max(summary.peak_speed, std::abs(HipSpeed(run, n, t)));
+    }
+    summary.onset_frame = OnsetFrame(hip);
+    summary.displacement = PushDirection(recording).dot((hip.back() - hip.front()).head<2>());
+    summary.outcome = Judge(run, n, summary.onset_frame);
+  }
   return run;
 }
 
 double HipSpeed(const FormationRun& run, int person, int frame) {
   if (frame == 0) return 0.0;
-  const std::vector<Vector3<double>>& hip = run.prediction.hip[person];
-  return (hip[frame] - hip[frame - 1]).norm() / run.recording.scene.dt;
-}
-
-double SignedHipSpeed(const FormationRun& run, int person, int frame) {
-  const double speed = HipSpeed(run, person, frame);
-  if (frame == 0) return speed;
-  const std::vector<Vector3<double>>& hip = run.prediction.hip[person];
+  const HipPath& hip = run.prediction.hip[person];
   const Vector3<double> step = hip[frame] - hip[frame - 1];
+  const double speed = step.norm() / run.recording.scene.dt;
   return -step.x() > std::abs(step.y()) ? -speed : speed;
 }
 
@@ -211,180 +300,22 @@ std::vector<BodyMotion> FormationBodies(const FormationRun& run,
   return RestoreBodies(restoration, options, people);
 }
 
-FormationPeople DistinctPeople(const std::vector<BodyRecording>& recordings) {
-  FormationPeople people;
+std::vector<Pose> PlacePeople(const std::vector<BodyRecording>& recordings, Scene* scene) {
+  std::vector<Pose> poses;
+  std::vector<double> masses;
   std::set<std::string> seen;
   for (const BodyRecording& recording : recordings) {
     for (int n = 0; n < recording.num_people(); ++n) {
       if (!seen.insert(recording.pendulum.subject_ids[n]).second) continue;
-      people.poses.push_back(recording.bodies[n].front());
-      people.masses.push_back(recording.pendulum.scene.people[n].body.mass);
+      poses.push_back(recording.bodies[n].front());
+      masses.push_back(recording.pendulum.scene.people[n].body.mass);
     }
   }
-  return people;
-}
-
-std::vector<Pose> PlacePeople(const FormationPeople& people, Scene* scene) {
   for (int n = 0; n < scene->num_people(); ++n) {
-    scene->people[n].body.mass = people.masses[n % people.count()];
+    scene->people[n].body.mass = masses[n % masses.size()];
   }
-  return TakePoses(people.poses, scene);
+  return TakePoses(poses, scene);
 }
-
-namespace {
-
-constexpr int kDraws = 60;
-constexpr double kLower = 0.05, kUpper = 0.95;
-
-// One for each draw: the onset frame of everybody, or nobody where the rollout left the model's
-// domain.
-std::vector<std::vector<int>> DrawnOnsets(const FittedModel& model, const std::string& set,
-                                          const FormationRun& run) {
-  const bool replicas = model.bootstrap && !model.bootstrap->values.empty();
-  if (!replicas && model.fit.uncertainty.covariance.size() == 0) return {};
-  BandOptions options;
-  options.samples = kDraws;
-  if (replicas) options.bootstrap = &*model.bootstrap;
-  const auto draws = SampleParameters(model.fit, options);
-  if (!draws.ok()) return {};
-  IdentifiedModel fitted = ModelOf(model.fit);
-  fitted.by_unit.clear();  // no person of a formation is one of the fit
-  std::vector<std::vector<int>> onsets;
-  for (const ParameterSet<double>& draw : draws.value()) {
-    IdentifiedModel drawn = WithShared(fitted, draw);
-    if (SetValues(set, &drawn)) return {};
-    const Prediction prediction = Predict(drawn, run.recording, run.num_frames());
-    onsets.emplace_back();
-    if (!prediction.status.ok) continue;
-    for (const auto& hip : prediction.hip) onsets.back().push_back(OnsetFrame(hip));
-  }
-  return onsets;
-}
-
-OnsetBand BandOf(const std::vector<std::vector<int>>& draws, int person, double dt) {
-  std::vector<double> seconds;
-  for (const std::vector<int>& onsets : draws) {
-    if (!onsets.empty() && onsets[person] >= 0) seconds.push_back(onsets[person] * dt);
-  }
-  if (seconds.empty()) return {};
-  return {Quantile(seconds, kLower), Quantile(seconds, kUpper),
-          static_cast<double>(seconds.size()) / static_cast<double>(draws.size())};
-}
-
-SpeedBand BandOfSpeed(const std::vector<std::vector<int>>& draws, const Scene& scene) {
-  std::vector<double> speeds;
-  for (const std::vector<int>& onsets : draws) {
-    if (onsets.empty()) continue;
-    if (const auto wave = SpeedOfWave(scene, onsets)) speeds.push_back(wave->MetresPerSecond());
-  }
-  SpeedBand band{0.0, 0.0, static_cast<int>(speeds.size()), static_cast<int>(draws.size())};
-  if (band.known()) band.from = Quantile(speeds, kLower), band.to = Quantile(speeds, kUpper);
-  return band;
-}
-
-constexpr int kSpeedFrames = 6;
-
-// Horizontal, m, from the first that was seen; frames without the person are left out.
-struct Track {
-  std::vector<int> frames;
-  std::vector<Eigen::Vector2d> places;
-};
-
-Track TrackOf(const std::vector<Eigen::Vector3d>& positions, double metres) {
-  Track track;
-  for (size_t frame = 0; frame < positions.size(); ++frame) {
-    if (!positions[frame].head<2>().allFinite()) continue;
-    track.frames.push_back(static_cast<int>(frame));
-    track.places.push_back(metres * positions[frame].head<2>());
-  }
-  return track;
-}
-
-int OnsetOf(const Track& track) {
-  for (size_t i = 0; i < track.places.size(); ++i) {
-    if ((track.places[i] - track.places[0]).norm() >= kOnsetDistance) return track.frames[i];
-  }
-  return -1;
-}
-
-// The way from the first place to the farthest.
-Eigen::Vector2d WayOf(const Track& track) {
-  Eigen::Vector2d farthest = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& place : track.places) {
-    if ((place - track.places[0]).norm() > farthest.norm()) farthest = place - track.places[0];
-  }
-  return farthest.normalized();
-}
-
-double PeakSpeedOf(const Track& track, const Eigen::Vector2d& way, double rate) {
-  double peak = 0.0;
-  for (size_t i = kSpeedFrames; i < track.places.size(); ++i) {
-    const double seconds = (track.frames[i] - track.frames[i - kSpeedFrames]) / rate;
-    peak = std::max(peak, way.dot(track.places[i] - track.places[i - kSpeedFrames]) / seconds);
-  }
-  return peak;
-}
-
-void AddSlowness(MeasuredWave* wave) {
-  std::vector<double> distance, onset;
-  for (const PersonInWave& person : wave->people) {
-    if (!person.onset_s) continue;
-    distance.push_back(person.distance);
-    onset.push_back(*person.onset_s);
-  }
-  wave->slowness = Slowness(distance, onset);
-  if (!wave->slowness) return;
-  const double s_mean = MeanOf(distance).mean, t_mean = MeanOf(onset).mean;
-  double squares = 0.0, left = 0.0;
-  for (size_t i = 0; i < distance.size(); ++i) {
-    const double s = distance[i] - s_mean;
-    squares += s * s;
-    left += std::pow(onset[i] - t_mean - *wave->slowness * s, 2);
-  }
-  const double freedom = static_cast<double>(distance.size()) - 2.0;
-  wave->error = std::sqrt(left / freedom / squares);
-  wave->quantile = StudentQuantile95(freedom);
-}
-
-// "0.75 m/s (95 %: 0.5 to 1.3, ...)"; or why the onsets give no speed.
-std::string SpeedOf(double slowness, double half_width, const std::string& from) {
-  const double slowest = slowness + half_width, fastest = slowness - half_width;
-  if (!(slowest > 0.0)) return "none: people farther away start earlier";
-  const std::string interval = fastest > 0.0
-                                   ? Rounded(1.0 / slowest, 3) + " to " + Rounded(1.0 / fastest, 3)
-                                   : "above " + Rounded(1.0 / slowest, 3);
-  const std::string ending = "95 %: " + interval + ", from " + from;
-  return slowness > 0.0 ? Rounded(1.0 / slowness, 3) + " m/s (" + ending + ")"
-                        : "it cannot be determined (" + ending + ")";
-}
-
-MaybeError CheckOnePointAPerson(const std::string& path, std::optional<MotionFormat> format) {
-  if (format && !HasSkeleton(*format) && (HoldsCrowd(*format) || *format == MotionFormat::kCsv)) {
-    return std::nullopt;
-  }
-  return Error{
-      "a wave is measured from one point a person: trajectories (.txt, or .csv with the header "
-      "id,frame,x,y), a table with three columns for each person (.csv), or a manifest of groups",
-      path};
-}
-
-// Hips in m under the subjects' names; frames that do not count are not seen.
-PointMotion HipTrajectories(const Recording& recording) {
-  PointMotion motion;
-  motion.rate_hz = recording.fps;
-  for (const RecordedPerson& person : recording.people) {
-    motion.names.push_back(person.subject_id);
-    motion.positions.push_back(person.hip);
-    for (size_t frame = 0; frame < person.weight.size(); ++frame) {
-      if (person.weight[frame] > 0.0) continue;
-      motion.positions.back()[frame].setConstant(std::numeric_limits<double>::quiet_NaN());
-    }
-  }
-  ChoosePoints({}, &motion);
-  return motion;
-}
-
-}  // namespace
 
 std::optional<WaveSpeed> SpeedOfWave(const Scene& scene, const std::vector<int>& onsets) {
   if (scene.pushes.size() != 1) return std::nullopt;
@@ -427,13 +358,30 @@ std::string HeldInDraws(const FittedModel& model, const std::string& set) {
 
 WaveBands BandsOfWave(const FittedModel& model, const std::string& set, const FormationRun& run) {
   const std::vector<std::vector<int>> draws = DrawnOnsets(model, set, run);
-  WaveBands bands;
-  if (draws.empty()) return bands;
-  bands.failed = static_cast<int>(std::count_if(
-      draws.begin(), draws.end(), [](const std::vector<int>& onsets) { return onsets.empty(); }));
   const Scene& scene = run.recording.scene;
-  for (int n = 0; n < run.num_people(); ++n) bands.onsets.push_back(BandOf(draws, n, scene.dt));
-  bands.speed = BandOfSpeed(draws, scene);
+  WaveBands bands;
+  std::vector<double> speeds;
+  for (const std::vector<int>& onsets : draws) {
+    if (onsets.empty()) {
+      ++bands.failed;
+    } else if (const auto wave = SpeedOfWave(scene, onsets)) {
+      speeds.push_back(wave->MetresPerSecond());
+    }
+  }
+  SpeedBand& speed = bands.speed;
+  speed.moved = static_cast<int>(speeds.size());
+  speed.draws = static_cast<int>(draws.size());
+  if (speed.known()) speed.from = Quantile(speeds, kLower), speed.to = Quantile(speeds, kUpper);
+  for (int n = 0; n < run.num_people() && !draws.empty(); ++n) {
+    std::vector<double> seconds;
+    for (const std::vector<int>& onsets : draws) {
+      if (!onsets.empty() && onsets[n] >= 0) seconds.push_back(onsets[n] * scene.dt);
+    }
+    OnsetBand& band = bands.onsets.emplace_back();
+    if (seconds.empty()) continue;
+    band = {Quantile(seconds, kLower), Quantile(seconds, kUpper),
+            static_cast<double>(seconds.size()) / static_cast<double>(draws.size())};
+  }
   return bands;
 }
 
@@ -454,7 +402,11 @@ MeasuredWave MeasureWave(const std::string& name, const PointMotion& motion) {
   }
   if (first < 0) return wave;
   const Track& origin = tracks[static_cast<size_t>(first)];
-  const Eigen::Vector2d way = WayOf(origin);
+  Eigen::Vector2d way = Eigen::Vector2d::Zero();  // from the first place to the farthest
+  for (const Eigen::Vector2d& place : origin.places) {
+    if ((place - origin.places[0]).norm() > way.norm()) way = place - origin.places[0];
+  }
+  way.normalize();
   for (size_t i = 0; i < tracks.size(); ++i) {
     const Track& track = tracks[i];
     if (track.places.empty()) continue;
@@ -489,7 +441,12 @@ Result<std::vector<MeasuredWave>> MeasureWaves(const std::string& path) {
     return waves;
   }
   const std::optional<MotionFormat> format = MotionFormatInFile(path);
-  if (MaybeError error = CheckOnePointAPerson(path, format)) return *error;
+  if (!format || HasSkeleton(*format) || !(HoldsCrowd(*format) || *format == MotionFormat::kCsv)) {
+    return Error{
+        "a wave is measured from one point a person: trajectories (.txt, or .csv with the header "
+        "id,frame,x,y), a table with three columns for each person (.csv), or a manifest of groups",
+        path};
+  }
   const Result<PointMotion> motion = ReadPointMotion(path, *format);
   if (!motion.ok()) return motion.error();
   if (!(motion.value().rate_hz > 0.0)) return Error{"it does not give its frame rate", path};

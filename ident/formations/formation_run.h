@@ -71,10 +71,9 @@ std::vector<ForcePart> ActingParts(const FormationRun& run);
 FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int num_frames,
                           const std::vector<std::string>& names = {});
 
-// |hip velocity| at a frame, m/s: how fast it got there (backward difference); zero at frame 0.
+// Speed of the hip at a frame, m/s: how fast it got there (backward difference; 0 at frame 0),
+// negative for a person who goes back more than aside.
 double HipSpeed(const FormationRun& run, int person, int frame);
-// The hip's speed, negative for a person who goes back more than aside: the colour of a wave.
-double SignedHipSpeed(const FormationRun& run, int person, int frame);
 
 // Bodies for people who were never recorded: a formation's people get the skeleton and pose
 // of a recorded person, or of the synthetic skeleton, and a restoration moves them.
@@ -101,25 +100,13 @@ std::vector<BodyMotion> FormationBodies(const FormationRun& run,
                                         const Restoration& restoration,
                                         const PostprocessOptions& options);
 
-// Recorded people as the people of a formation: their masses, and the postures in which
-// their recordings begin (rod length, cart height, lean, and the skeleton of a body).
+// Recorded people (everybody once, by id, in the order of the recordings) in the places of the
+// scene's, facing +x, from the first again where there are fewer: their masses, and the postures in
+// which their recordings begin (rod length, cart height, lean, skeleton). Before pushes are added:
+// those depend on the bodies. Returns the first pose of each person.
+std::vector<Pose> PlacePeople(const std::vector<BodyRecording>& recordings, Scene* scene);
 
-struct FormationPeople {
-  std::vector<Pose> poses;     // at frame 0 of each person's first recording
-  std::vector<double> masses;  // kg
-
-  int count() const { return static_cast<int>(poses.size()); }
-};
-
-// Everybody once (by id), in the order of the recordings.
-FormationPeople DistinctPeople(const std::vector<BodyRecording>& recordings);
-
-// Puts them in the places of the scene's people, facing +x, from the first again where there are
-// fewer. Before pushes are added: those depend on the bodies. Returns the first pose of each
-// person.
-std::vector<Pose> PlacePeople(const FormationPeople& people, Scene* scene);
-
-// How fast a push goes through a formation.
+// The speed of a push through a formation.
 
 // Speed from the first person who moves to the foremost one who does; people are numbered forwards.
 struct WaveSpeed {
@@ -148,7 +135,7 @@ struct OnsetBand {
 // SpeedOfWave in each draw, m/s: between the first and the foremost of its own movers.
 struct SpeedBand {
   double from = 0.0, to = 0.0;
-  int moved = 0, draws = 0;  // those that have a speed, and all
+  int moved = 0, draws = 0;  // draws that have a speed, and all
 
   // Few draws have no quantiles.
   bool known() const { return moved >= kLeastDraws; }
@@ -201,7 +188,7 @@ MeasuredWave MeasureWave(const std::string& name, const PointMotion& motion);
 // the readers, and of files whose points are markers of a body.
 Result<std::vector<MeasuredWave>> MeasureWaves(const std::string& path);
 
-// Everybody, and the speed of the onset.
+// A row for each person, and the speed of the onset.
 std::string WaveText(const MeasuredWave& wave);
 // The speed over several; empty of fewer than two that have one.
 std::string WavesText(const std::vector<MeasuredWave>& waves);

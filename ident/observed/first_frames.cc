@@ -1,4 +1,3 @@
-// ident: axes of a push, the gains that forecast, and turned axes.
 #include "ident/observed/first_frames.h"
 
 #include <algorithm>
@@ -20,70 +19,26 @@ Eigen::Matrix3d PushAxes(const PendulumRecording& recording) {
   return axes;
 }
 
-SeenHips HipsAt(const PendulumRecording& recording, int frame) {
-  SeenHips hips;
-  for (int n = 0; n < recording.num_people(); ++n) {
-    hips.hip.push_back(recording.hip[n][frame]);
-    hips.seen.push_back(recording.Weight(n, frame) > 0.0);
-  }
-  return hips;
-}
-
 namespace {
 
 constexpr double kForceTime = 0.06;  // s, in which the unknown force dies out
 
-// Gains of the reference person (self_terms.h).
-void SetForecastGains(ParameterSet<double>* p) {
-  for (Parameter id :
-       {kMu, kMuY, kCoulombFriction, kKpX, kKpY, kKdX, kKdY, kBx, kBy, kTx, kTy, kCq, kDq}) {
-    (*p)[id] = 0.0;
-  }
-  (*p)[kKpTheta] = (*p)[kKpPhi] = 500.0;
-  (*p)[kKdTheta] = (*p)[kKdPhi] = 700.0;
-  (*p)[kAx] = (*p)[kAy] = -1.5;
-}
-
-}  // namespace
-
-SceneFilter::SceneFilter(const IdentifiedModel& model, std::vector<ParameterSet<double>> parameters,
-                         const InputNoise& noise, const PendulumRecording& recording, int frames)
-    : angle_(OwnAxes(recording, model.options.directions)),
-      to_(angle_),
-      back_(-angle_),
-      filter_(SceneInOwnAxes(recording, model.options), model.options, std::move(parameters), noise,
-              frames) {}
-
-RolloutStatus SceneFilter::Observe(const std::vector<PendulumState<double>>& measured,
-                                   const std::vector<bool>& seen) {
-  if (angle_ == 0.0) return filter_.Observe(measured, seen);
-  std::vector<PendulumState<double>> turned = measured;
-  for (PendulumState<double>& state : turned) state.q = to_.Pose(state.q);
-  return filter_.Observe(turned, seen);
-}
-
-PendulumState<double> SceneFilter::TurnedBack(PendulumState<double> state) const {
-  if (angle_ == 0.0) return state;
-  state.qd = back_.PoseJacobian(state.q) * state.qd;
-  state.q = back_.Pose(state.q);
-  return state;
-}
-
-RolloutStatus SceneFilter::Forecast(RolloutPath<double>* path) const {
-  const RolloutStatus status = filter_.Forecast(path);
-  if (angle_ == 0.0 || !status.ok) return status;
-  for (int t = 0; t < path->num_frames(); ++t) {
-    for (int n = 0; n < path->num_people(); ++n) path->At(t, n) = TurnedBack(path->At(t, n));
-  }
-  return status;
-}
-
+// The filter that forecasts, its tail so much stronger and longer than the model's; none of models
+// with networks, whose memory no measurement corrects.
 std::optional<SceneFilter> ForecastFilter(const IdentifiedModel& model, double tail,
                                           const PendulumRecording& recording, int frames) {
   if (model.options.learned != nullptr) return std::nullopt;
   std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
   for (ParameterSet<double>& p : parameters) {
-    if (model.options.stance == Stance::kSlide) SetForecastGains(&p);
+    if (model.options.stance == Stance::kSlide) {  // gains of the reference person (self_terms.h)
+      for (Parameter id :
+           {kMu, kMuY, kCoulombFriction, kKpX, kKpY, kKdX, kKdY, kBx, kBy, kTx, kTy, kCq, kDq}) {
+        p[id] = 0.0;
+      }
+      p[kKpTheta] = p[kKpPhi] = 500.0;
+      p[kKdTheta] = p[kKdPhi] = 700.0;
+      p[kAx] = p[kAy] = -1.5;
+    }
     ScaleTail(tail, &p);
     p[kTailTime] *= tail;
   }
@@ -92,99 +47,7 @@ std::optional<SceneFilter> ForecastFilter(const IdentifiedModel& model, double t
   return SceneFilter(model, std::move(parameters), noise, recording, frames);
 }
 
-namespace {
-
 constexpr double kErrorWindow = 0.05;  // s, of which an error of velocity is the mean
-
-}  // namespace
-
-SeenFrame FrameAt(const PendulumRecording& recording, int frame) {
-  SeenFrame seen{HipsAt(recording, frame), {}};
-  for (const auto& states : recording.states) seen.states.push_back(states[frame]);
-  return seen;
-}
-
-FirstFrames::FirstFrames(const IdentifiedModel& model, double tail,
-                         const PendulumRecording& recording, HipPaths rollout, int frames)
-    : recording_(&recording),
-      rollout_(std::move(rollout)),
-      frames_(frames),
-      input_(ForecastFilter(model, tail, recording, frames)),
-      beside_(recording.hip.size(), Vector3<double>::Zero()) {}
-
-double FirstFrames::seconds() const { return (observed() - 1) * recording_->scene.dt; }
-
-void FirstFrames::Observe(SeenFrame frame) {
-  if (observed() >= frames()) return;
-  if (input_) {
-    std::vector<bool> seen;
-    for (size_t n = 0; n < beside_.size(); ++n)
-      seen.push_back(frame.hips.Sees(static_cast<int>(n)));
-    input_->Observe(frame.states, seen);
-    for (size_t n = 0; n < beside_.size(); ++n) {
-      if (!seen[n] || !input_->status().ok) continue;
-      beside_[n] = frame.hips.hip[n] - HipPosition(recording_->scene.people[n].body,
-                                                   input_->State(static_cast<int>(n)).q);
-    }
-  }
-  seen_.push_back(std::move(frame));
-}
-
-// Frame 0 always was.
-int FirstFrames::LastSeen(int person, int until) const {
-  while (until > 0 && !seen_[until - 1].hips.Sees(person)) --until;
-  return until;
-}
-
-Vector3<double> FirstFrames::HipAt(int person, int frame) const {
-  return frame == 0 ? recording_->hip[person][0] : seen_[frame - 1].hips.hip[person];
-}
-
-std::vector<Vector3<double>> FirstFrames::LastHips() const {
-  std::vector<Vector3<double>> hips;
-  for (int n = 0; n < recording_->num_people(); ++n) {
-    hips.push_back(HipAt(n, LastSeen(n, observed() - 1)));
-  }
-  return hips;
-}
-
-HipPath FirstFrames::Physics(int person) const {
-  const double dt = recording_->scene.dt;
-  const int window = std::max(1, static_cast<int>(std::lround(kErrorWindow / dt)));
-  const int last = LastSeen(person, observed() - 1);
-  const int before = LastSeen(person, std::max(0, last - window));
-  const auto error = [&](int frame) -> Vector3<double> {
-    if (frame == 0) return Vector3<double>::Zero();
-    return HipAt(person, frame) - rollout_[person][frame];
-  };
-  const Vector3<double> off = error(last);
-  Vector3<double> velocity = Vector3<double>::Zero();
-  if (last > before) velocity = (off - error(before)) / ((last - before) * dt);
-  HipPath path;
-  for (int t = observed(); t < frames_; ++t) {
-    const double reach = kErrorTime * (1.0 - std::exp(-(t - last) * dt / kErrorTime));
-    path.push_back(rollout_[person][t] + off + reach * velocity);
-  }
-  return path;
-}
-
-TwoForecasts FirstFrames::Forecasts() const {
-  TwoForecasts two;
-  for (size_t n = 0; n < rollout_.size(); ++n) two.physics.push_back(Physics(static_cast<int>(n)));
-  if (!input_) return two;
-  two.input_status = input_->Forecast(&two.input_path);
-  if (!two.input_status.ok) return two;
-  for (size_t n = 0; n < beside_.size(); ++n) {
-    HipPath& hips = two.input.emplace_back();
-    for (int t = observed(); t < frames(); ++t) {
-      const Vector4<double>& q = two.input_path.At(t, static_cast<int>(n)).q;
-      hips.push_back(beside_[n] + HipPosition(recording_->scene.people[n].body, q));
-    }
-  }
-  return two;
-}
-
-namespace {
 
 constexpr double kPhysicsAlone = 0.25 - 1e-9;  // s
 constexpr double kSeconds = 0.35, kAhead = 0.5, kLeastSeconds = 0.05, kLeastSpeed = 0.05;
@@ -198,7 +61,7 @@ std::vector<double> QuantilesOf(const ErrorScale& error) {
   return {std::begin(kNormal), std::end(kNormal)};
 }
 
-// By how much the logarithm of the share above falls between the last two quantiles.
+// The fall of the logarithm of the share above between the last two quantiles.
 double LastFall() {
   return std::log((1.0 - kErrorShares[kNumShares - 2]) / (1.0 - kErrorShares[kNumShares - 1]));
 }
@@ -228,84 +91,6 @@ double QuantileAt(const std::vector<double>& quantiles, double share) {
   const double last = quantiles[kNumShares - 1] - quantiles[kNumShares - 2];
   return at + last / LastFall() * std::log((1.0 - below) / std::max(1e-12, 1.0 - share));
 }
-
-}  // namespace
-
-std::optional<double> InputShare(double input_time, const HipPaths& physics, const HipPaths& input,
-                                 double seconds, ForecastUse use) {
-  const bool asks_physics = use != ForecastUse::kInput && !physics.empty();
-  const bool asks_input = use != ForecastUse::kPhysics && !input.empty();
-  if (!asks_physics && !asks_input) return std::nullopt;
-  if (!asks_input) return 0.0;
-  if (!asks_physics) return 1.0;
-  return seconds < kPhysicsAlone ? 0.0 : std::min(1.0, std::sqrt(input_time / seconds));
-}
-
-HipPaths Blended(double share, const HipPaths& physics, const HipPaths& input) {
-  HipPaths blended = share > 0.0 ? input : physics;
-  for (size_t n = 0; share > 0.0 && share < 1.0 && n < blended.size(); ++n) {
-    for (size_t t = 0; t < blended[n].size(); ++t) {
-      blended[n][t] = (1.0 - share) * physics[n][t] + share * input[n][t];
-    }
-  }
-  return blended;
-}
-
-Eigen::Vector4d ScaleFeatures(double ahead, double seconds, double speed) {
-  return {1.0, std::log(ahead / kAhead), std::log((seconds + kLeastSeconds) / kSeconds),
-          std::log(speed + kLeastSpeed)};
-}
-
-HipDistribution::HipDistribution(const std::array<ErrorScale, 3>& errors,
-                                 const Eigen::Matrix3d& axes, HipPaths centre,
-                                 const std::vector<Vector3<double>>& from, double seconds,
-                                 double dt)
-    : centre_(std::move(centre)) {
-  // A world axis has the quantiles of the axis of the push that it is nearest to.
-  for (int i = 0; i < 3; ++i) {
-    Eigen::Index nearest = 0;
-    axes.row(i).cwiseAbs().maxCoeff(&nearest);
-    quantiles_[i] = QuantilesOf(errors[nearest]);
-  }
-  for (size_t n = 0; n < centre_.size(); ++n) {
-    scale_.emplace_back();
-    for (size_t t = 0; t < centre_[n].size(); ++t) {
-      const double ahead = (static_cast<double>(t) + 1.0) * dt;
-      const Eigen::Vector4d features =
-          ScaleFeatures(ahead, seconds, (centre_[n][t] - from[n]).norm() / ahead);
-      Vector3<double> variance;
-      for (int i = 0; i < 3; ++i) {
-        variance[i] = std::exp(2.0 * errors[i].coefficients.dot(features));
-      }
-      scale_[n].push_back((axes.cwiseAbs2() * variance).cwiseSqrt());
-    }
-  }
-}
-
-double HipDistribution::Cdf(int person, int frame, int axis, double value) const {
-  const double z = (value - centre_[person][frame][axis]) / Scale(person, frame, axis);
-  const double share = 0.5 * ShareBelow(quantiles_[axis], std::abs(z));
-  return z < 0.0 ? 0.5 - share : 0.5 + share;
-}
-
-double HipDistribution::Quantile(int person, int frame, int axis, double share) const {
-  const double z = QuantileAt(quantiles_[axis], std::abs(2.0 * share - 1.0));
-  return centre_[person][frame][axis] + (share < 0.5 ? -1.0 : 1.0) * z * Scale(person, frame, axis);
-}
-
-double HipDistribution::Crps(int person, int frame, int axis, double value) const {
-  // Twice the mean pinball loss over levels.
-  constexpr int kLevels = 99;
-  double sum = 0.0;
-  for (int i = 1; i <= kLevels; ++i) {
-    const double level = static_cast<double>(i) / (kLevels + 1);
-    const double off = value - Quantile(person, frame, axis, level);
-    sum += 2.0 * off * (off >= 0.0 ? level : level - 1.0) / kLevels;
-  }
-  return sum;
-}
-
-namespace {
 
 // s after frame 0.
 constexpr double kMoments[] = {0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0};
@@ -405,7 +190,7 @@ std::vector<double> WeightedQuantiles(std::vector<std::pair<double, double>> val
   return quantiles;
 }
 
-// Over people and frames that were seen; none where there are none.
+// The mean distance over people and frames that were seen; none where there are none.
 std::optional<double> MeanDistance(const ForecastTrial& trial, const HipPaths& hips) {
   double sum = 0.0, count = 0.0;
   for (size_t n = 0; n < hips.size(); ++n) {
@@ -419,6 +204,201 @@ std::optional<double> MeanDistance(const ForecastTrial& trial, const HipPaths& h
 }
 
 }  // namespace
+
+SceneFilter::SceneFilter(const IdentifiedModel& model, std::vector<ParameterSet<double>> parameters,
+                         const InputNoise& noise, const PendulumRecording& recording, int frames)
+    : angle_(OwnAxes(recording, model.options.directions)),
+      to_(angle_),
+      back_(-angle_),
+      filter_(SceneInOwnAxes(recording, model.options), model.options, std::move(parameters), noise,
+              frames) {}
+
+RolloutStatus SceneFilter::Observe(const std::vector<PendulumState<double>>& measured,
+                                   const std::vector<bool>& seen) {
+  if (angle_ == 0.0) return filter_.Observe(measured, seen);
+  std::vector<PendulumState<double>> turned = measured;
+  for (PendulumState<double>& state : turned) state.q = to_.Pose(state.q);
+  return filter_.Observe(turned, seen);
+}
+
+PendulumState<double> SceneFilter::TurnedBack(PendulumState<double> state) const {
+  if (angle_ == 0.0) return state;
+  state.qd = back_.PoseJacobian(state.q) * state.qd;
+  state.q = back_.Pose(state.q);
+  return state;
+}
+
+RolloutStatus SceneFilter::Forecast(RolloutPath<double>* path) const {
+  const RolloutStatus status = filter_.Forecast(path);
+  if (angle_ == 0.0 || !status.ok) return status;
+  for (int t = 0; t < path->num_frames(); ++t) {
+    for (int n = 0; n < path->num_people(); ++n) path->At(t, n) = TurnedBack(path->At(t, n));
+  }
+  return status;
+}
+
+SeenFrame FrameAt(const PendulumRecording& recording, int frame) {
+  SeenFrame seen;
+  for (int n = 0; n < recording.num_people(); ++n) {
+    seen.hip.push_back(recording.hip[n][frame]);
+    seen.states.push_back(recording.states[n][frame]);
+    seen.seen.push_back(recording.Weight(n, frame) > 0.0);
+  }
+  return seen;
+}
+
+FirstFrames::FirstFrames(const IdentifiedModel& model, double tail,
+                         const PendulumRecording& recording, HipPaths rollout, int frames)
+    : recording_(&recording),
+      rollout_(std::move(rollout)),
+      frames_(frames),
+      input_(ForecastFilter(model, tail, recording, frames)),
+      beside_(recording.hip.size(), Vector3<double>::Zero()) {}
+
+double FirstFrames::seconds() const { return (observed() - 1) * recording_->scene.dt; }
+
+void FirstFrames::Observe(SeenFrame frame) {
+  if (observed() >= frames()) return;
+  if (input_) {
+    std::vector<bool> seen;
+    for (size_t n = 0; n < beside_.size(); ++n) seen.push_back(frame.Sees(static_cast<int>(n)));
+    input_->Observe(frame.states, seen);
+    for (size_t n = 0; n < beside_.size(); ++n) {
+      if (!seen[n] || !input_->status().ok) continue;
+      beside_[n] = frame.hip[n] - HipPosition(recording_->scene.people[n].body,
+                                              input_->State(static_cast<int>(n)).q);
+    }
+  }
+  seen_.push_back(std::move(frame));
+}
+
+// Frame 0 always was.
+int FirstFrames::LastSeen(int person, int until) const {
+  while (until > 0 && !seen_[until - 1].Sees(person)) --until;
+  return until;
+}
+
+Vector3<double> FirstFrames::HipAt(int person, int frame) const {
+  return frame == 0 ? recording_->hip[person][0] : seen_[frame - 1].hip[person];
+}
+
+std::vector<Vector3<double>> FirstFrames::LastHips() const {
+  std::vector<Vector3<double>> hips;
+  for (int n = 0; n < recording_->num_people(); ++n) {
+    hips.push_back(HipAt(n, LastSeen(n, observed() - 1)));
+  }
+  return hips;
+}
+
+HipPath FirstFrames::Physics(int person) const {
+  const double dt = recording_->scene.dt;
+  const int window = std::max(1, static_cast<int>(std::lround(kErrorWindow / dt)));
+  const int last = LastSeen(person, observed() - 1);
+  const int before = LastSeen(person, std::max(0, last - window));
+  const auto error = [&](int frame) -> Vector3<double> {
+    if (frame == 0) return Vector3<double>::Zero();
+    return HipAt(person, frame) - rollout_[person][frame];
+  };
+  const Vector3<double> off = error(last);
+  Vector3<double> velocity = Vector3<double>::Zero();
+  if (last > before) velocity = (off - error(before)) / ((last - before) * dt);
+  HipPath path;
+  for (int t = observed(); t < frames_; ++t) {
+    const double reach = kErrorTime * (1.0 - std::exp(-(t - last) * dt / kErrorTime));
+    path.push_back(rollout_[person][t] + off + reach * velocity);
+  }
+  return path;
+}
+
+TwoForecasts FirstFrames::Forecasts() const {
+  TwoForecasts two;
+  for (size_t n = 0; n < rollout_.size(); ++n) two.physics.push_back(Physics(static_cast<int>(n)));
+  if (!input_) return two;
+  two.input_status = input_->Forecast(&two.input_path);
+  if (!two.input_status.ok) return two;
+  for (size_t n = 0; n < beside_.size(); ++n) {
+    HipPath& hips = two.input.emplace_back();
+    for (int t = observed(); t < frames(); ++t) {
+      const Vector4<double>& q = two.input_path.At(t, static_cast<int>(n)).q;
+      hips.push_back(beside_[n] + HipPosition(recording_->scene.people[n].body, q));
+    }
+  }
+  return two;
+}
+
+std::optional<double> InputShare(double input_time, const HipPaths& physics, const HipPaths& input,
+                                 double seconds, ForecastUse use) {
+  const bool asks_physics = use != ForecastUse::kInput && !physics.empty();
+  const bool asks_input = use != ForecastUse::kPhysics && !input.empty();
+  if (!asks_physics && !asks_input) return std::nullopt;
+  if (!asks_input) return 0.0;
+  if (!asks_physics) return 1.0;
+  return seconds < kPhysicsAlone ? 0.0 : std::min(1.0, std::sqrt(input_time / seconds));
+}
+
+HipPaths Blended(double share, const HipPaths& physics, const HipPaths& input) {
+  HipPaths blended = share > 0.0 ? input : physics;
+  for (size_t n = 0; share > 0.0 && share < 1.0 && n < blended.size(); ++n) {
+    for (size_t t = 0; t < blended[n].size(); ++t) {
+      blended[n][t] = (1.0 - share) * physics[n][t] + share * input[n][t];
+    }
+  }
+  return blended;
+}
+
+Eigen::Vector4d ScaleFeatures(double ahead, double seconds, double speed) {
+  return {1.0, std::log(ahead / kAhead), std::log((seconds + kLeastSeconds) / kSeconds),
+          std::log(speed + kLeastSpeed)};
+}
+
+HipDistribution::HipDistribution(const std::array<ErrorScale, 3>& errors,
+                                 const Eigen::Matrix3d& axes, HipPaths centre,
+                                 const std::vector<Vector3<double>>& from, double seconds,
+                                 double dt)
+    : centre_(std::move(centre)) {
+  // A world axis has the quantiles of the axis of the push that it is nearest to.
+  for (int i = 0; i < 3; ++i) {
+    Eigen::Index nearest = 0;
+    axes.row(i).cwiseAbs().maxCoeff(&nearest);
+    quantiles_[i] = QuantilesOf(errors[nearest]);
+  }
+  for (size_t n = 0; n < centre_.size(); ++n) {
+    scale_.emplace_back();
+    for (size_t t = 0; t < centre_[n].size(); ++t) {
+      const double ahead = (static_cast<double>(t) + 1.0) * dt;
+      const Eigen::Vector4d features =
+          ScaleFeatures(ahead, seconds, (centre_[n][t] - from[n]).norm() / ahead);
+      Vector3<double> variance;
+      for (int i = 0; i < 3; ++i) {
+        variance[i] = std::exp(2.0 * errors[i].coefficients.dot(features));
+      }
+      scale_[n].push_back((axes.cwiseAbs2() * variance).cwiseSqrt());
+    }
+  }
+}
+
+double HipDistribution::Cdf(int person, int frame, int axis, double value) const {
+  const double z = (value - centre_[person][frame][axis]) / Scale(person, frame, axis);
+  const double share = 0.5 * ShareBelow(quantiles_[axis], std::abs(z));
+  return z < 0.0 ? 0.5 - share : 0.5 + share;
+}
+
+double HipDistribution::Quantile(int person, int frame, int axis, double share) const {
+  const double z = QuantileAt(quantiles_[axis], std::abs(2.0 * share - 1.0));
+  return centre_[person][frame][axis] + (share < 0.5 ? -1.0 : 1.0) * z * Scale(person, frame, axis);
+}
+
+double HipDistribution::Crps(int person, int frame, int axis, double value) const {
+  // Twice the mean pinball loss over levels.
+  constexpr int kLevels = 99;
+  double sum = 0.0;
+  for (int i = 1; i <= kLevels; ++i) {
+    const double level = static_cast<double>(i) / (kLevels + 1);
+    const double off = value - Quantile(person, frame, axis, level);
+    sum += 2.0 * off * (off >= 0.0 ? level : level - 1.0) / kLevels;
+  }
+  return sum;
+}
 
 ForecastRule LearnRule(const std::vector<ForecastTrial>& trials, int left_out) {
   ForecastRule best;

@@ -18,14 +18,6 @@ namespace pushid {
 // Columns: along the push, across, upwards.
 Eigen::Matrix3d PushAxes(const PendulumRecording& recording);
 
-// Where people's hips are at one frame.
-struct SeenHips {
-  std::vector<Vector3<double>> hip;  // m
-  std::vector<bool> seen = {};       // by person; empty: all of them
-  bool Sees(int person) const { return seen.empty() || seen[person]; }
-};
-SeenHips HipsAt(const PendulumRecording& recording, int frame);
-
 // The filter of unknown forces (models/input_filter.h) on a recording's scene, in the axes
 // and with the bodies that the model sees (problem/own_axes.h); what goes in and comes out is in
 // the axes of the file.
@@ -39,7 +31,7 @@ SeenHips HipsAt(const PendulumRecording& recording, int frame);
 
 class SceneFilter {
  public:
-  // Only people, pushes and frame 0 of the recording are read. parameters: one set for each
+  // The recording is read for people, pushes and frame 0 alone. parameters: one set for each
   // person. The model must outlive the filter. frames: how far to look, in all.
   SceneFilter(const IdentifiedModel& model, std::vector<ParameterSet<double>> parameters,
               const InputNoise& noise, const PendulumRecording& recording, int frames);
@@ -59,11 +51,6 @@ class SceneFilter {
   TurnedAxes to_, back_;
   InputFilter filter_;
 };
-
-// The filter that forecasts, its tail so much stronger and longer than the model's; none of models
-// with networks, whose memory no measurement corrects.
-std::optional<SceneFilter> ForecastFilter(const IdentifiedModel& model, double tail,
-                                          const PendulumRecording& recording, int frames);
 
 // A motion that was seen to begin, and what comes of it.
 //
@@ -88,26 +75,28 @@ std::optional<SceneFilter> ForecastFilter(const IdentifiedModel& model, double t
 
 inline constexpr double kErrorTime = 0.3;  // s, in which an error of velocity dies out
 
-// Everybody at one frame.
+// The hips (m) and states of all people at one frame.
 struct SeenFrame {
-  SeenHips hips;
+  std::vector<Vector3<double>> hip;
   std::vector<PendulumState<double>> states;
+  std::vector<bool> seen = {};  // by person; empty: all of them
+  bool Sees(int person) const { return seen.empty() || seen[person]; }
 };
 SeenFrame FrameAt(const PendulumRecording& recording, int frame);
 
 // Hips to come, by [person][frame ahead].
 struct TwoForecasts {
   HipPaths physics, input;  // empty of one that has nothing to say
-  // What the filter with an unknown force says of all frames.
+  // The filter's rollout over all frames.
   RolloutStatus input_status;
   RolloutPath<double> input_path;
 };
 
 class FirstFrames {
  public:
-  // Only people, pushes and frame 0 of the recording are read; it and the model must outlive
-  // the object. rollout: the model's hips over as many frames as are looked at; empty: it left the
-  // domain. tail: of ForecastFilter.
+  // The recording is read for people, pushes and frame 0 alone; it and the model must outlive the
+  // object. rollout: the model's hips over as many frames as are looked at; empty: it left the
+  // domain. tail: how much stronger and longer the filter's tail is than the model's.
   FirstFrames(const IdentifiedModel& model, double tail, const PendulumRecording& recording,
               HipPaths rollout, int frames);
 
@@ -118,7 +107,7 @@ class FirstFrames {
   double seconds() const;  // after frame 0
   bool HasInput() const { return input_.has_value(); }
   const std::vector<SeenFrame>& seen() const { return seen_; }  // from frame 1 on
-  // Where hips were seen last, by person.
+  // The places where hips were seen last, by person.
   std::vector<Vector3<double>> LastHips() const;
 
   TwoForecasts Forecasts() const;
@@ -144,7 +133,7 @@ HipPaths Blended(double share, const HipPaths& physics, const HipPaths& input);
 // Features of the log scale, as above.
 Eigen::Vector4d ScaleFeatures(double ahead, double seconds, double speed);
 
-// Where hips will be.
+// The distribution of the hips to come.
 class HipDistribution {
  public:
   // centre: the forecast, by person and frame ahead; from: where the hips were at the last frame
@@ -169,7 +158,7 @@ class HipDistribution {
   HipPaths centre_, scale_;
 };
 
-// What forecasts are put together by, learned from forecasts of recordings that the
+// The rule that forecasts are put together by, learned from forecasts of recordings that the
 // forecasting model was not fitted to.
 //
 // A model flatters itself on the recordings it was fitted to, the more so the later, and what is

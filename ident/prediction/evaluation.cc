@@ -1,5 +1,3 @@
-// ident: static, constant velocity and kinematic predictions; scores of recordings, their groups
-// and clusters.
 #include "ident/prediction/evaluation.h"
 
 #include <algorithm>
@@ -16,101 +14,36 @@
 namespace pushid {
 namespace {
 
-// What was seen of one hip, frame 0 at least; unseen frames are ignored.
-struct SeenPath {
-  HipPath hip;
-  std::vector<bool> seen;
+struct Motion {
+  Vector3<double> place, velocity = Vector3<double>::Zero(), acceleration = velocity;
 };
 
+constexpr int kLeastPredicted = 10;                                   // frames
 constexpr double kWindow = 14.0 / 60.0, kFading = 0.25, kDrag = 1.0;  // s, s and 1/s
 
-struct Motion {
-  Vector3<double> place, velocity, acceleration;
-};
-
-// The motion at the last frame that was seen.
-Motion FittedMotion(const SeenPath& path, int last, double dt) {
-  const int window = std::max(3, static_cast<int>(std::lround(kWindow / dt)));
-  std::vector<int> frames;
-  for (int t = std::max(0, last - window + 1); t <= last; ++t) {
-    if (path.seen[t] || t == 0) frames.push_back(t);
-  }
-  Motion motion{path.hip[last], Vector3<double>::Zero(), Vector3<double>::Zero()};
-  const int order = std::min<int>(3, static_cast<int>(frames.size()));
-  if (order < 2) return motion;
-  Eigen::MatrixXd powers(frames.size(), order), places(frames.size(), 3);
-  for (size_t i = 0; i < frames.size(); ++i) {
-    const double s = (frames[i] - last) * dt;
-    for (int j = 0; j < order; ++j) powers(i, j) = j == 0 ? 1.0 : j == 1 ? s : 0.5 * s * s;
-    places.row(i) = path.hip[frames[i]].transpose();
-  }
-  const Eigen::MatrixXd fitted = SolveSymmetric(Eigen::MatrixXd(powers.transpose() * powers),
-                                                Eigen::MatrixXd(powers.transpose() * places));
-  motion.velocity = fitted.row(1).transpose();
-  if (order > 2) motion.acceleration = fitted.row(2).transpose();
-  return motion;
-}
-
-// frames_ahead places after the last frame there is, from a motion at an earlier one.
-template <typename Step>
-HipPath Continued(Motion motion, int frames_before, int frames_ahead, const Step& step) {
-  HipPath ahead;
-  for (int t = 0; t < frames_before + frames_ahead; ++t) {
-    step(&motion);
-    if (t >= frames_before) ahead.push_back(motion.place);
-  }
-  return ahead;
-}
-
-int LastSeen(const SeenPath& path) {
-  int last = static_cast<int>(path.hip.size()) - 1;
-  while (last > 0 && !path.seen[last]) --last;
-  return last;
-}
-
-// The mean velocity since the frame before that was seen.
-HipPath GoesOn(const SeenPath& path, double dt, int frames_ahead) {
-  const int last = LastSeen(path);
-  int before = std::max(0, last - 1);
-  while (before > 0 && !path.seen[before]) --before;
-  Motion motion{path.hip[last], Vector3<double>::Zero(), Vector3<double>::Zero()};
-  if (last > before) motion.velocity = (path.hip[last] - path.hip[before]) / ((last - before) * dt);
-  return Continued(motion, static_cast<int>(path.hip.size()) - 1 - last, frames_ahead,
-                   [dt](Motion* m) { m->place += dt * m->velocity; });
-}
-
-HipPath GoesOnAccelerating(const SeenPath& path, double dt, int frames_ahead) {
-  const int last = LastSeen(path);
-  return Continued(FittedMotion(path, last, dt), static_cast<int>(path.hip.size()) - 1 - last,
-                   frames_ahead, [dt](Motion* m) {
-                     m->velocity += dt * (m->acceleration - kDrag * m->velocity);
-                     m->acceleration *= std::exp(-dt / kFading);
-                     m->place += dt * m->velocity;
-                   });
-}
-
-constexpr int kLeastPredicted = 10;  // frames
-
-// A push may last as long as its recording: something must be left to predict.
-int LastKnown(const PendulumRecording& recording, int observed) {
+// Hips as recorded until the last frame that is known, then by steps of a motion from the last one
+// that was seen. motion_at(hip, seen, frame): that of a person whose hip was seen in the
+// frames of which seen(t) holds; frame 0 always was.
+template <typename MotionAt, typename Step>
+HipPaths GoneOn(const PendulumRecording& recording, int observed, const MotionAt& motion_at,
+                const Step& step) {
+  // A push may last as long as its recording: something must be left to predict.
   const int frames = recording.num_frames();
   const int latest = std::max(frames / 2, frames - 1 - kLeastPredicted);
-  const int known = observed > 0 ? observed - 1 : std::min(recording.scene.LastPushEnd(), latest);
-  return std::min(known, frames - 1);
-}
-
-// What is known as it was, and then what `ahead` says of it.
-template <typename Ahead>
-HipPaths GoneOn(const PendulumRecording& recording, int observed, const Ahead& ahead) {
-  const int known = LastKnown(recording, observed) + 1;
+  const int known = std::min(
+      frames - 1, observed > 0 ? observed - 1 : std::min(recording.scene.LastPushEnd(), latest));
   HipPaths paths;
   for (int n = 0; n < recording.num_people(); ++n) {
-    const auto& hip = recording.hip[n];
-    SeenPath seen{HipPath(hip.begin(), hip.begin() + known), {}};
-    for (int t = 0; t < known; ++t) seen.seen.push_back(t == 0 || recording.Weight(n, t) > 0.0);
-    const HipPath rest = ahead(seen, recording.num_frames() - known);
-    paths.push_back(std::move(seen.hip));
-    paths.back().insert(paths.back().end(), rest.begin(), rest.end());
+    const HipPath& hip = recording.hip[n];
+    const auto seen = [&](int t) { return t == 0 || recording.Weight(n, t) > 0.0; };
+    int last = known;
+    while (!seen(last)) --last;
+    Motion motion = motion_at(hip, seen, last);
+    HipPath& path = paths.emplace_back(hip.begin(), hip.begin() + known + 1);
+    for (int t = last + 1; t < frames; ++t) {
+      step(&motion);
+      if (t > known) path.push_back(motion.place);
+    }
   }
   return paths;
 }
@@ -137,7 +70,7 @@ StepTiming TimingOf(const PendulumRecording& recording, const Prediction& predic
   return timing;
 }
 
-// How much harder and longer people are pushed and watched than they were.
+// The factor on pushes, and the frames watched past the recording's end, of FallsWhenPushedHarder.
 constexpr double kStrongerPush = 1.4;
 constexpr int kFramesPastTheEnd = 40;
 
@@ -224,15 +157,57 @@ HipPaths StaticBaseline(const PendulumRecording& recording, int observed) {
 }
 
 HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observed) {
-  return GoneOn(recording, observed, [&](const SeenPath& seen, int ahead) {
-    return GoesOn(seen, recording.scene.dt, ahead);
-  });
+  const double dt = recording.scene.dt;
+  const auto since_before = [dt](const HipPath& hip, const auto& seen, int last) {
+    Motion motion{hip[last]};
+    int before = std::max(0, last - 1);
+    while (!seen(before)) --before;
+    if (last > before) motion.velocity = (hip[last] - hip[before]) / ((last - before) * dt);
+    return motion;
+  };
+  return GoneOn(recording, observed, since_before,
+                [dt](Motion* m) { m->place += dt * m->velocity; });
 }
 
 HipPaths KinematicBaseline(const PendulumRecording& recording, int observed) {
-  return GoneOn(recording, observed, [&](const SeenPath& seen, int ahead) {
-    return GoesOnAccelerating(seen, recording.scene.dt, ahead);
+  const double dt = recording.scene.dt;
+  const auto quadratic = [dt](const HipPath& hip, const auto& seen, int last) {
+    const int window = std::max(3, static_cast<int>(std::lround(kWindow / dt)));
+    std::vector<int> frames;
+    for (int t = std::max(0, last - window + 1); t <= last; ++t) {
+      if (seen(t)) frames.push_back(t);
+    }
+    Motion motion{hip[last]};
+    const int order = std::min<int>(3, static_cast<int>(frames.size()));
+    if (order < 2) return motion;
+    Eigen::MatrixXd powers(frames.size(), order), places(frames.size(), 3);
+    for (size_t i = 0; i < frames.size(); ++i) {
+      const double s = (frames[i] - last) * dt;
+      for (int j = 0; j < order; ++j) powers(i, j) = j == 0 ? 1.0 : j == 1 ? s : 0.5 * s * s;
+      places.row(i) = hip[frames[i]].transpose();
+    }
+    const Eigen::MatrixXd fitted = SolveSymmetric(Eigen::MatrixXd(powers.transpose() * powers),
+                                                  Eigen::MatrixXd(powers.transpose() * places));
+    motion.velocity = fitted.row(1).transpose();
+    if (order > 2) motion.acceleration = fitted.row(2).transpose();
+    return motion;
+  };
+  return GoneOn(recording, observed, quadratic, [dt](Motion* m) {
+    m->velocity += dt * (m->acceleration - kDrag * m->velocity);
+    m->acceleration *= std::exp(-dt / kFading);
+    m->place += dt * m->velocity;
   });
+}
+
+std::string Metric::Title() const {
+  std::string title = std::string(name) + " " + unit;
+  std::replace(title.begin(), title.end(), '_', ' ');
+  return title;
+}
+
+std::string Metric::Text(double value, int digits) const {
+  std::string text = Title();
+  return text.insert(text.rfind(' '), " " + Rounded(value, digits));
 }
 
 std::string MetricsText(const MetricList& metrics, const Metrics& values, int digits) {

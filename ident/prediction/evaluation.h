@@ -53,26 +53,36 @@ enum MetricId : int {
 using Metrics = Eigen::Array<double, kNumMetrics, 1>;
 using MetricList = std::vector<MetricId>;
 
-struct MetricRow : Metric {
-  bool with_error;  // files and tables have its standard error
+struct Metric {
+  const char* name;        // "hipADE"
+  const char* unit;        // "m"
+  bool with_error = true;  // files and tables have its standard error
+
+  // The key in files: "hipADE_m".
+  std::string Key() const { return std::string(name) + "_" + unit; }
+  std::string ErrorKey() const { return std::string(name) + "_standard_error_" + unit; }
+  // The head of a column: "after hipADE m".
+  std::string Title() const;
+  // The metric in a sentence: "hipADE 0.1 m".
+  std::string Text(double value, int digits) const;
 };
-inline constexpr MetricRow kMetrics[kNumMetrics] = {
-    {{"hipADE", "m"}, true},
-    {{"hipFDE", "m"}, true},
-    {{"after_hipADE", "m"}, true},
-    {{"first_third_hipADE", "m"}, true},
-    {{"second_third_hipADE", "m"}, true},
-    {{"last_third_hipADE", "m"}, true},
-    {{"inside90_x", "share"}, true},
-    {{"inside90_y", "share"}, true},
-    {{"inside50_x", "share"}, true},
-    {{"inside50_y", "share"}, true},
-    {{"crps", "m"}, true},
-    {{"MPJPE", "m"}, true},
-    {{"relative_MPJPE", "m"}, true},
-    {{"bound_MPJPE", "m"}, false},
-    {{"MBLE", "m"}, false},
-    {{"FSE", "cm"}, false},
+inline constexpr Metric kMetrics[kNumMetrics] = {
+    {"hipADE", "m"},
+    {"hipFDE", "m"},
+    {"after_hipADE", "m"},
+    {"first_third_hipADE", "m"},
+    {"second_third_hipADE", "m"},
+    {"last_third_hipADE", "m"},
+    {"inside90_x", "share"},
+    {"inside90_y", "share"},
+    {"inside50_x", "share"},
+    {"inside50_y", "share"},
+    {"crps", "m"},
+    {"MPJPE", "m"},
+    {"relative_MPJPE", "m"},
+    {"bound_MPJPE", "m", false},
+    {"MBLE", "m", false},
+    {"FSE", "cm", false},
 };
 
 // The metrics of tables of hips. observed: frames that were seen, 0: none. The first is the one
@@ -108,17 +118,17 @@ struct ScoreClusters {
 // "4 people", "32 recordings"
 std::string ClustersText(ClusterBy by, int count);
 
-// What scores are grouped by: `subject`, who was pushed, or any label that a manifest gives.
+// Keys that scores are grouped by: `subject`, the pushed person, or any label of the manifest.
 using LabelKeys = std::vector<std::string>;
 LabelKeys UsualGroups();  // magnitude, subject, setting
-// From "setting,footwear", and back.
+// Keys from "setting,footwear", and back.
 LabelKeys ParseLabelKeys(const std::string& list);
 std::string LabelKeysText(const LabelKeys& keys);
 
 // Error: a key that is not `subject` and that no recording has; not of the usual ones.
 MaybeError CheckGroups(const std::vector<PendulumRecording>& recordings, const LabelKeys& keys);
 
-// What recordings are called by a key, one text each; empty where they have no such label.
+// The name of each recording's group by a key; empty where it has no such label.
 std::vector<std::string> GroupNames(const std::vector<PendulumRecording>& recordings,
                                     const std::string& key);
 
@@ -127,7 +137,7 @@ std::vector<std::string> GroupNames(const std::vector<PendulumRecording>& record
 // observed: frames seen first, frame 0 among them; 0: until the last push ends, or the last frame
 // but ten (half of a short recording); of the static one frame 0 alone.
 HipPaths StaticBaseline(const PendulumRecording& recording, int observed = 0);
-// Everybody goes on from the last seen place with the velocity since the frame before.
+// Every hip goes on from its last seen place with the velocity since the frame before.
 HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observed = 0);
 // A quadratic through the last 0.23 s, whose acceleration fades with 0.25 s and whose velocity with
 // 1 s.
@@ -151,7 +161,7 @@ struct Score {
   int frames = 0, first_frame = 1;  // all, and the first that counts
   Metrics value = Metrics::Zero();
   std::string failure;      // why there is no score; such a recording is in no mean
-  std::string pushed = {};  // whose id; empty: errors of means are clustered by recordings
+  std::string pushed = {};  // id of that person; empty: errors of means are clustered by recordings
 };
 using ScoreList = std::vector<const Score*>;
 ScoreClusters ClustersOf(const ScoreList& scores);
@@ -160,7 +170,7 @@ struct RecordingScore : Score {
   bool fell = false;                  // a person leaned beyond 1.0 rad
   bool fell_harder = false;           // FallsWhenPushedHarder, where it was asked
   PropagationScore propagation = {};  // empty for a single person and after a failure
-  // One per person; empty where the model says nothing of steps, and after a failure.
+  // One value per person; empty where the model has no step probability, and after a failure.
   std::vector<StepPrediction> steps = {};
   HipPaths predicted = {};  // of more than one person; groups are judged together
 };
@@ -176,8 +186,8 @@ struct MeanScore {
 template <typename T>
 using ByLabel = nlohmann::ordered_map<std::string, std::map<std::string, T>>;
 
-// By key: how many scores are in none of its groups, for want of the label; only where others have
-// it. Scores that failed do not count.
+// The number of scores that lack the label of a key, by key, where others have it. Scores that
+// failed do not count.
 using WithoutLabel = std::map<std::string, int>;
 WithoutLabel CountWithoutLabel(const std::vector<PendulumRecording>& recordings,
                                const ScoreList& scores, const LabelKeys& keys);
@@ -217,7 +227,7 @@ struct ScoreSummary : ScoreMeans {
   std::map<std::string, PropagationSummary> propagation_by_setting;  // none for single people
   StepScore steps;     // unknown where the model says nothing of them
   int observed = 0;    // frames that were seen, where it was asked for
-  bool bands = false;  // whether they were scored
+  bool bands = false;  // true where bands were scored
 };
 
 RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& predicted,
@@ -226,7 +236,7 @@ RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& pred
 // Errors: --observed below 1, or no frame left to predict in a recording, which is named.
 MaybeError CheckObserved(const std::vector<PendulumRecording>& recordings, int observed);
 
-// Whether anybody leans beyond kFallAngle.
+// True where a person leans beyond kFallAngle.
 bool AnybodyFalls(const Prediction& prediction);
 
 // Predicted and recorded steps; empty where either is not known.
@@ -236,7 +246,7 @@ std::vector<StepPrediction> StepPredictions(const PendulumRecording& recording,
 // Bands of drawn paths.
 void ScoreDraws(const PendulumRecording& recording, const DrawnPaths& draws, RecordingScore* score);
 
-// How many futures are drawn from frame 0, and from which seed on (futures.h); none: no bands.
+// Number of futures drawn from frame 0 (futures.h; 0: no bands), and their seed.
 struct Draws {
   int count = 0;
   uint64_t seed = 1;
@@ -250,14 +260,14 @@ RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording&
 RecordingScore ScoreReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
                                int observed);
 
-// Whether anybody falls with every push times 1.4, until 40 frames past the recording's end.
+// True where a person falls with every push times 1.4, until 40 frames past the recording's end.
 bool FallsWhenPushedHarder(const IdentifiedModel& model, const PendulumRecording& recording);
 
 ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
                        std::vector<RecordingScore> scores, int observed = 0, bool bands = false,
                        const LabelKeys& group_by = UsualGroups());
 
-// What a model has to beat.
+// The scores of a baseline.
 struct BaselineSummary {
   std::string name, key;
   ScoreSummary summary;

@@ -1,5 +1,3 @@
-// ident: segments and their Fourier transforms (Eigen's), what moves people and how they answer,
-// and frequency responses person by person.
 #include "ident/prediction/frequency_response.h"
 
 #include <algorithm>
@@ -39,89 +37,7 @@ ArrayXcd Transformed(const std::vector<double>& x, int first, int frames) {
   return bins.head(frames / 2 + 1);
 }
 
-}  // namespace
-
-int PeriodOf(const std::vector<double>& series) {
-  const int frames = static_cast<int>(series.size()), first = frames / 10;
-  if (frames < 8) return 0;
-  const double variance = Variance(series, first, frames - first);
-  if (!(variance > 0.0)) return 0;
-  // A slow series repeats itself after a frame or two as well: it has to go away before.
-  bool went_away = false;
-  int best = 0;
-  double least = 0.02 * 0.02 * variance;
-  for (int period = 2; period <= frames / 2; ++period) {
-    const int compared = frames - first - period;
-    const double far = 0.5 * 0.5 * variance * compared;
-    double sum = 0.0;
-    for (int t = frames - 1; t - period >= first && sum <= far; --t) {
-      sum += (series[t] - series[t - period]) * (series[t] - series[t - period]);
-    }
-    went_away = went_away || sum > far;
-    if (!went_away) continue;
-    const double apart = sum / compared;
-    if (best > 0 && apart >= least) return best;
-    if (apart < least) best = period, least = apart;
-  }
-  return best;
-}
-
-Segmenting SegmentsOf(const std::vector<double>& input) {
-  const int frames = static_cast<int>(input.size()), period = PeriodOf(input);
-  if (period == 0) return {};
-  const bool twice = frames / period == 2;
-  const int used = twice ? period + period / 2 : (frames / period - 1) * period;
-  return {period, frames - used, twice ? period / 2 : period};
-}
-
-void CrossSpectra::Add(const CrossSpectra& other) {
-  if (uu.size() == 0) {
-    *this = other;
-    return;
-  }
-  const Eigen::Index bins = std::min(uu.size(), other.uu.size());
-  uu = (uu.head(bins) + other.uu.head(bins)).eval();
-  yy = (yy.head(bins) + other.yy.head(bins)).eval();
-  yu = (yu.head(bins) + other.yu.head(bins)).eval();
-  averages += other.averages;
-}
-
-double CrossSpectra::Coherence(int bin) const {
-  const double power = uu[bin] * yy[bin];
-  return power > 0.0 ? std::norm(yu[bin]) / power : 0.0;
-}
-
-std::vector<int> CrossSpectra::CoherentBins() const {
-  std::vector<int> bins;
-  if (averages <= 1.0) return bins;  // of a single segment it is 1, whatever it holds
-  const double by_chance = std::max(0.3, 1.0 - std::pow(0.05, 1.0 / (averages - 1.0)));
-  const double least = 1e-4 * uu.tail(uu.size() - 1).maxCoeff();
-  for (int i = 1; i < uu.size(); ++i) {
-    if (uu[i] > least && Coherence(i) > by_chance) bins.push_back(i);
-  }
-  return bins;
-}
-
-CrossSpectra CrossSpectraOf(const std::vector<double>& input, const std::vector<double>& output,
-                            const Segmenting& segments, double dt) {
-  const int frames = segments.frames, end = static_cast<int>(std::min(input.size(), output.size()));
-  const ArrayXd none = ArrayXd::Zero(frames / 2 + 1);
-  CrossSpectra spectra{1.0 / (frames * dt), 0.0, none, none, none.cast<std::complex<double>>()};
-  int count = 0;
-  for (int first = segments.first; first + frames <= end; first += segments.step, ++count) {
-    const ArrayXcd u = Transformed(input, first, frames);
-    const ArrayXcd y = Transformed(output, first, frames);
-    spectra.uu += u.abs2();
-    spectra.yy += y.abs2();
-    spectra.yu += y * u.conjugate();
-  }
-  spectra.averages = 1.0 + (count - 1.0) * segments.step / frames;
-  return spectra;
-}
-
-namespace {
-
-// What moves people on and on.
+// The disturbance that goes on through a recording.
 struct ContinuousInput {
   Disturbance kind = Disturbance::kGroundShift;
   int plane = 0;
@@ -285,6 +201,84 @@ void Gather(const PendulumRecording& recording, const ModelOptions& options,
 constexpr const char* kAngles[] = {"theta", "phi"};
 
 }  // namespace
+
+int PeriodOf(const std::vector<double>& series) {
+  const int frames = static_cast<int>(series.size()), first = frames / 10;
+  if (frames < 8) return 0;
+  const double variance = Variance(series, first, frames - first);
+  if (!(variance > 0.0)) return 0;
+  // A slow series repeats itself after a frame or two as well: it has to go away before.
+  bool went_away = false;
+  int best = 0;
+  double least = 0.02 * 0.02 * variance;
+  for (int period = 2; period <= frames / 2; ++period) {
+    const int compared = frames - first - period;
+    const double far = 0.5 * 0.5 * variance * compared;
+    double sum = 0.0;
+    for (int t = frames - 1; t - period >= first && sum <= far; --t) {
+      sum += (series[t] - series[t - period]) * (series[t] - series[t - period]);
+    }
+    went_away = went_away || sum > far;
+    if (!went_away) continue;
+    const double apart = sum / compared;
+    if (best > 0 && apart >= least) return best;
+    if (apart < least) best = period, least = apart;
+  }
+  return best;
+}
+
+Segmenting SegmentsOf(const std::vector<double>& input) {
+  const int frames = static_cast<int>(input.size()), period = PeriodOf(input);
+  if (period == 0) return {};
+  const bool twice = frames / period == 2;
+  const int used = twice ? period + period / 2 : (frames / period - 1) * period;
+  return {period, frames - used, twice ? period / 2 : period};
+}
+
+void CrossSpectra::Add(const CrossSpectra& other) {
+  if (uu.size() == 0) {
+    *this = other;
+    return;
+  }
+  const Eigen::Index bins = std::min(uu.size(), other.uu.size());
+  uu = (uu.head(bins) + other.uu.head(bins)).eval();
+  yy = (yy.head(bins) + other.yy.head(bins)).eval();
+  yu = (yu.head(bins) + other.yu.head(bins)).eval();
+  averages += other.averages;
+}
+
+double CrossSpectra::Coherence(int bin) const {
+  const double power = uu[bin] * yy[bin];
+  return power > 0.0 ? std::norm(yu[bin]) / power : 0.0;
+}
+
+std::vector<int> CrossSpectra::CoherentBins() const {
+  std::vector<int> bins;
+  if (averages <= 1.0) return bins;  // of a single segment it is 1, whatever it holds
+  const double by_chance = std::max(0.3, 1.0 - std::pow(0.05, 1.0 / (averages - 1.0)));
+  const double least = 1e-4 * uu.tail(uu.size() - 1).maxCoeff();
+  for (int i = 1; i < uu.size(); ++i) {
+    if (uu[i] > least && Coherence(i) > by_chance) bins.push_back(i);
+  }
+  return bins;
+}
+
+CrossSpectra CrossSpectraOf(const std::vector<double>& input, const std::vector<double>& output,
+                            const Segmenting& segments, double dt) {
+  const int frames = segments.frames, end = static_cast<int>(std::min(input.size(), output.size()));
+  const ArrayXd none = ArrayXd::Zero(frames / 2 + 1);
+  CrossSpectra spectra{1.0 / (frames * dt), 0.0, none, none, none.cast<std::complex<double>>()};
+  int count = 0;
+  for (int first = segments.first; first + frames <= end; first += segments.step, ++count) {
+    const ArrayXcd u = Transformed(input, first, frames);
+    const ArrayXcd y = Transformed(output, first, frames);
+    spectra.uu += u.abs2();
+    spectra.yy += y.abs2();
+    spectra.yu += y * u.conjugate();
+  }
+  spectra.averages = 1.0 + (count - 1.0) * segments.step / frames;
+  return spectra;
+}
 
 std::string FrequencyResponse::InputUnit() const {
   return input == Disturbance::kGroundShift ? "m" : "rad";

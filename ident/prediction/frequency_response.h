@@ -28,7 +28,7 @@
 namespace pushid {
 
 struct Segmenting {
-  int frames = 0, first = 0, step = 0;  // of a segment, where the first begins, to the next
+  int frames = 0, first = 0, step = 0;  // length, begin of the first, distance to the next
 };
 
 // The shortest period, at most half of the series, after which it repeats itself to 2 % of its
@@ -62,7 +62,7 @@ enum class LoopOutput { kAngle, kTorque };
 struct FrequencyBin {
   double hz = 0.0;
   int people = 0;
-  double coherence = 0.0;                       // of their spectra together
+  double coherence = 0.0;                       // of the summed spectra
   double log_gain = 0.0, log_gain_error = 0.0;  // natural logarithm
   double phase = 0.0, phase_error = 0.0;
   double model_log_gain = 0.0, model_phase = 0.0;  // FrequencyResponse::has_model

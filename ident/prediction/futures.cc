@@ -1,10 +1,10 @@
-// ident: sampling, rolling out, and quantiles by frame.
 #include "ident/prediction/futures.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "ident/figures/text_table.h"
@@ -29,8 +29,8 @@ double ChiSquare(int freedom, Random* random) {
   return sum;
 }
 
-// With few error paths each stands for a normal distribution of unknown spread: to either side,
-// and as far as Student's t of as many degrees of freedom goes.
+// The factor on one of few error paths, each of which stands for a normal distribution of unknown
+// spread: either sign, and Student's t of as many degrees of freedom.
 double SpreadOfFew(size_t paths, Random* random) {
   if (paths >= kEnoughErrors) return 1.0;
   const int freedom = static_cast<int>(paths);
@@ -65,8 +65,9 @@ std::vector<ParameterSet<double>> FromCovariance(const FitResult& result,
   return sets;
 }
 
-std::vector<ParameterSet<double>> FromBootstrap(const FitResult& result, const Bootstrap& b,
+std::vector<ParameterSet<double>> FromBootstrap(const FitResult& result,
                                                 const BandOptions& options) {
+  const Bootstrap& b = *options.bootstrap;
   Random random(options.seed);
   std::vector<ParameterSet<double>> sets;
   for (int s = 0; s < options.samples; ++s) {
@@ -88,24 +89,12 @@ BandPoint PointOf(const Vector3<double>& hip, const PendulumState<double>& state
   return point;
 }
 
-BandPoint PointOf(const Prediction& prediction, int frame, int person) {
-  return PointOf(prediction.hip[person][frame], prediction.path.At(frame, person));
-}
-
-// Quantiles over draws of one person's path.
-PathBand QuantilesOf(const DrawnPaths& draws, int person) {
-  PathBand band;
-  std::vector<BandPoint>* const rows[] = {&band.lower90, &band.lower50, &band.middle, &band.upper50,
-                                          &band.upper90};
-  const size_t frames = draws[0][person].size();
-  for (auto* row : rows) row->assign(frames, BandPoint::Zero());
-  for (size_t t = 0; t < frames; ++t) {
-    for (int axis = 0; axis < BandPoint::RowsAtCompileTime; ++axis) {
-      const std::vector<double> values = ValuesAt(draws, person, t, axis);
-      for (size_t q = 0; q < 5; ++q) (*rows[q])[t][axis] = Quantile(values, kShares[q]);
-    }
+std::vector<BandPoint> PathOf(const Prediction& prediction, int person) {
+  std::vector<BandPoint> path;
+  for (int t = 0; t < prediction.path.num_frames(); ++t) {
+    path.push_back(PointOf(prediction.hip[person][t], prediction.path.At(t, person)));
   }
-  return band;
+  return path;
 }
 
 bool StepsAreSpread(const IdentifiedModel& model) {
@@ -113,16 +102,8 @@ bool StepsAreSpread(const IdentifiedModel& model) {
          model.step_probability->coefficients[1] > 0.0;
 }
 
-// A person steps if the support is smaller than f b, which has the probability At(margin).
-void DrawSupport(const StepProbability& p, Random* random, ParameterSet<double>* own) {
-  const double u = random->Unit();
-  const double margin = (std::log(u / (1.0 - u)) - p.coefficients[0]) / p.coefficients[1];
-  const double factor = FactorAtMargin((*own)[kSupportFront], margin);
-  for (Parameter id : {kSupportFront, kSupportBack, kSupportSide}) (*own)[id] *= factor;
-}
-
-// By the drawn parameters until a foot leaves the ground, then by the person's own: what is drawn
-// is whether there is a first step, and who went on with a support of millimetres would march.
+// A rollout by the drawn parameters until a foot leaves the ground, then by the person's own: only
+// the first step is drawn, and a support of millimetres would make people march on.
 RolloutStatus RollDrawn(const Scene& scene, const ModelOptions& options,
                         std::vector<ParameterSet<double>> now,
                         const std::vector<ParameterSet<double>>& own,
@@ -137,18 +118,6 @@ RolloutStatus RollDrawn(const Scene& scene, const ModelOptions& options,
     }
   }
   return {};
-}
-
-// "0: 0.05, 1: 0.62, 2: 0.33"
-std::string StepShares(const Futures& futures, size_t person) {
-  std::map<int, int> counts;
-  for (const std::vector<int>& draw : futures.steps) ++counts[draw[person]];
-  std::string text;
-  for (const auto& [steps, count] : counts) {
-    text += (text.empty() ? "" : ", ") + std::to_string(steps) + ": " +
-            Rounded(count / static_cast<double>(futures.steps.size()), 2);
-  }
-  return text;
 }
 
 }  // namespace
@@ -173,14 +142,10 @@ IdentifiedModel WithShared(const IdentifiedModel& model, const ParameterSet<doub
   return drawn;
 }
 
-Result<std::vector<ParameterSet<double>>> SampleParameters(const FitResult& result,
-                                                           const BandOptions& options) {
-  if (options.bootstrap == nullptr) return FromCovariance(result, options);
-  if (options.bootstrap->values.empty()) {
-    return Error{
-        "the model's bootstrap has no replicas; repeat it by pushid-check --bootstrap=199"};
-  }
-  return FromBootstrap(result, *options.bootstrap, options);
+std::vector<ParameterSet<double>> SampleParameters(const FitResult& result,
+                                                   const BandOptions& options) {
+  return options.bootstrap == nullptr ? FromCovariance(result, options)
+                                      : FromBootstrap(result, options);
 }
 
 std::vector<ErrorPath> ErrorPaths(const FitResult& result,
@@ -191,13 +156,12 @@ std::vector<ErrorPath> ErrorPaths(const FitResult& result,
     const double speed = PushSpeed(recording);
     const Prediction prediction = Predict(model, recording);
     if (!prediction.status.ok || speed <= 0.0) continue;
-    ErrorPath path{recording.id, {}};
     const int person = recording.pushed_person;
+    ErrorPath& error = paths.emplace_back(ErrorPath{recording.id, PathOf(prediction, person)});
     for (int t = 0; t < recording.num_frames(); ++t) {
       const BandPoint measured = PointOf(recording.hip[person][t], recording.states[person][t]);
-      path.path.push_back((measured - PointOf(prediction, t, person)) / speed);
+      error.path[t] = (measured - error.path[t]) / speed;
     }
-    paths.push_back(path);
   }
   return paths;
 }
@@ -225,10 +189,7 @@ DrawnPaths DrawPaths(const FitResult& result, const std::vector<ParameterSet<dou
     if (!prediction.status.ok) continue;
     draws.emplace_back();
     for (int n = 0; n < recording.scene.num_people(); ++n) {
-      std::vector<BandPoint> path;
-      for (int t = 0; t < prediction.path.num_frames(); ++t) {
-        path.push_back(PointOf(prediction, t, n));
-      }
+      std::vector<BandPoint> path = PathOf(prediction, n);
       if (!others.empty() && n == recording.pushed_person) {
         const size_t last = others.size() - 1;
         const size_t drawn = static_cast<size_t>(draw * static_cast<double>(others.size()));
@@ -251,8 +212,9 @@ DrawnPaths PathsAround(const FitResult& result, const std::vector<ParameterSet<d
   const Prediction rollout = Predict(ModelOf(result), recording);
   if (draws.empty() || !rollout.status.ok) return draws;
   for (int n = 0; n < recording.scene.num_people(); ++n) {
-    for (size_t t = 0; t < draws[0][n].size(); ++t) {
-      BandPoint by = PointOf(rollout, static_cast<int>(t), n);
+    const std::vector<BandPoint> path = PathOf(rollout, n);
+    for (size_t t = 0; t < path.size(); ++t) {
+      BandPoint by = path[t];
       for (int axis = 0; axis < by.size(); ++axis) {
         by[axis] -= Quantile(ValuesAt(draws, n, t, axis), 0.5);
       }
@@ -272,7 +234,17 @@ PredictiveBands ComputeBands(const FitResult& result,
   bands.samples = static_cast<int>(samples.size());
   bands.failed = bands.samples - static_cast<int>(draws.size());
   for (int n = 0; n < recording.scene.num_people() && !draws.empty(); ++n) {
-    bands.people.push_back(QuantilesOf(draws, n));
+    PathBand& band = bands.people.emplace_back();
+    int quantile = 0;
+    for (auto* row : {&band.lower90, &band.lower50, &band.middle, &band.upper50, &band.upper90}) {
+      for (size_t t = 0; t < draws[0][n].size(); ++t) {
+        BandPoint& point = row->emplace_back();
+        for (int axis = 0; axis < point.size(); ++axis) {
+          point[axis] = Quantile(ValuesAt(draws, n, t, axis), kShares[quantile]);
+        }
+      }
+      ++quantile;
+    }
   }
   return bands;
 }
@@ -304,7 +276,11 @@ Result<Futures> DrawFutures(const IdentifiedModel& model, const PendulumRecordin
   for (int draw = 0; draw < draws; ++draw) {
     std::vector<ParameterSet<double>> drawn = parameters;
     for (size_t n = 0; spread && n < drawn.size(); ++n) {
-      DrawSupport(*model.step_probability, &random, &drawn[n]);
+      // A person steps if the support is smaller than f b, which has the probability At(margin).
+      const auto& c = model.step_probability->coefficients;
+      const double u = random.Unit(), margin = (std::log(u / (1.0 - u)) - c[0]) / c[1];
+      const double factor = FactorAtMargin(drawn[n][kSupportFront], margin);
+      for (Parameter id : {kSupportFront, kSupportBack, kSupportSide}) drawn[n][id] *= factor;
     }
     FrameTable<Vector4<double>> noise(frames, scene.num_people());
     for (int t = 0; noisy && t < frames; ++t) {
@@ -325,9 +301,7 @@ Result<Futures> DrawFutures(const IdentifiedModel& model, const PendulumRecordin
     for (int n = 0; n < scene.num_people(); ++n) {
       for (int t = 0; t < frames; ++t) {
         const PendulumState<double>& state = path.At(t, n);
-        BandPoint point;
-        point << HipPosition(scene.people[n].body, state.q), state.q.tail<2>();
-        people[n].push_back(point);
+        people[n].push_back(PointOf(HipPosition(scene.people[n].body, state.q), state));
       }
       if (spread) {
         futures.steps.back().push_back(static_cast<int>(PredictedSteps(path, n).size()));
@@ -350,7 +324,14 @@ std::string LastFrameText(const Futures& futures) {
           ValuesAt(futures.paths, static_cast<int>(n), futures.paths[0][n].size() - 1, axis);
       for (double share : {0.5, 0.05, 0.95}) row.push_back(Rounded(Quantile(values, share), 3));
     }
-    if (!futures.steps.empty()) row.push_back(StepShares(futures, n));
+    std::map<int, int> counts;  // of draws by steps: "0: 0.05, 1: 0.62, 2: 0.33"
+    for (const std::vector<int>& draw : futures.steps) ++counts[draw[n]];
+    std::vector<std::string> shares;
+    for (const auto& [steps, count] : counts) {
+      const double share = count / static_cast<double>(futures.steps.size());
+      shares.push_back(std::to_string(steps) + ": " + Rounded(share, 2));
+    }
+    if (!shares.empty()) row.push_back(Joined(shares));
     table.Add(row);
   }
   return table.ToString();

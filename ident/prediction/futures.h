@@ -43,13 +43,13 @@ struct PredictiveBands {
 struct BandOptions {
   int samples = 200;
   uint64_t seed = 1;
-  // Parameters are drawn from its replicas; null: from the covariance.
+  // Parameters are drawn from its replicas, of which there must be some; null: from the covariance.
   const Bootstrap* bootstrap = nullptr;
 };
 
-// Parameter sets, natural units. Errors: asked for a bootstrap that the result does not hold.
-Result<std::vector<ParameterSet<double>>> SampleParameters(const FitResult& result,
-                                                           const BandOptions& options);
+// Parameter sets, natural units.
+std::vector<ParameterSet<double>> SampleParameters(const FitResult& result,
+                                                   const BandOptions& options);
 
 // The model with other shared values; units keep their deviation from them on the fitted scale.
 IdentifiedModel WithShared(const IdentifiedModel& model, const ParameterSet<double>& shared);
@@ -96,7 +96,7 @@ struct Futures {
   std::vector<std::vector<int>> steps;  // [draw][person]: how many; empty where feet do not step
 };
 
-// What is wrong with drawing from a model: nothing in it is spread.
+// Error: nothing in the model is spread.
 MaybeError CheckDrawsFrom(const IdentifiedModel& model);
 
 // num_frames: 0 means as many as the recording has. Errors: as CheckDrawsFrom.

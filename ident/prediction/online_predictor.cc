@@ -1,4 +1,3 @@
-// ident: rollouts corrected by the frames that were seen.
 #include "ident/prediction/online_predictor.h"
 
 #include <cmath>
@@ -11,15 +10,6 @@ Eigen::Vector2d CartUnder(const Body& body, const Vector3<double>& hip, const Ve
   Vector4<double> at_origin = q;
   at_origin.head<2>().setZero();
   return (hip - HipPosition(body, at_origin)).head<2>();
-}
-
-// A predictor that has seen the first frames.
-Result<OnlinePredictor> After(const IdentifiedModel& model, const PendulumRecording& recording,
-                              int observed, int num_frames, ForecastUse use) {
-  Result<OnlinePredictor> made = OnlinePredictor::Make(
-      model, recording, num_frames > 0 ? num_frames : recording.num_frames(), use);
-  for (int t = 1; made.ok() && t < observed; ++t) made.value().Observe(FrameAt(recording, t));
-  return made;
 }
 
 }  // namespace
@@ -66,7 +56,7 @@ void OnlinePredictor::SetForecast(const TwoForecasts& two, double input_share,
   for (int n = 0; n < recording_->num_people(); ++n) {
     // The error of the lean, where it was seen.
     Eigen::Vector2d off = Eigen::Vector2d::Zero();
-    if (seen.back().hips.Sees(n)) {
+    if (seen.back().Sees(n)) {
       off = (seen.back().states[n].q - prediction->path.At(from - 1, n).q).tail<2>();
     }
     for (int t = 1; t < frames_->frames(); ++t) {
@@ -75,7 +65,7 @@ void OnlinePredictor::SetForecast(const TwoForecasts& two, double input_share,
       if (t < from) {
         state.q = seen[t - 1].states[n].q;
         state.qd = seen[t - 1].states[n].qd;
-        hip = seen[t - 1].hips.hip[n];
+        hip = seen[t - 1].hip[n];
         continue;
       }
       hip = hips[n][t - from];
@@ -119,11 +109,14 @@ HipDistribution OnlinePredictor::Distribution(const Prediction& prediction) cons
 Result<Prediction> PredictFrom(const IdentifiedModel& model, const PendulumRecording& recording,
                                int observed, int num_frames, ForecastUse use) {
   if (observed == 0) return Predict(model, recording, num_frames);
-  const Result<OnlinePredictor> made = After(model, recording, observed, num_frames, use);
+  Result<OnlinePredictor> made = OnlinePredictor::Make(
+      model, recording, num_frames > 0 ? num_frames : recording.num_frames(), use);
   if (!made.ok()) return made.error();
-  Prediction prediction = made.value().Predict();
+  OnlinePredictor& predictor = made.value();
+  for (int t = 1; t < observed; ++t) predictor.Observe(FrameAt(recording, t));
+  Prediction prediction = predictor.Predict();
   if (!prediction.status.ok) return prediction;
-  const HipDistribution hips = made.value().Distribution(prediction);
+  const HipDistribution hips = predictor.Distribution(prediction);
   for (int n = 0; n < hips.num_people(); ++n) {
     HipBand band;
     for (int t = 0; t < hips.num_frames(); ++t) {

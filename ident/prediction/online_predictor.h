@@ -35,7 +35,7 @@ class OnlinePredictor {
   // The next frame, frame 1 first; nothing once all frames were seen.
   void Observe(SeenFrame frame);
   int observed() const { return frames_->observed(); }  // with frame 0
-  // Without bands, which take longer than all the rest.
+  // A prediction without bands, which take longer than all the rest.
   Prediction Predict() const;
   // The distribution of the hips behind those seen, in a prediction that did not fail.
   HipDistribution Distribution(const Prediction& prediction) const;
@@ -52,8 +52,8 @@ class OnlinePredictor {
   std::unique_ptr<FirstFrames> frames_;
 };
 
-// From the first `observed` frames of a recording, with bands. num_frames: 0 means as many as the
-// recording has, otherwise more than observed. observed 0: as Predict.
+// A prediction with bands from the first `observed` frames of a recording. num_frames: 0 means as
+// many as the recording has, otherwise more than observed. observed 0: as Predict.
 Result<Prediction> PredictFrom(const IdentifiedModel& model, const PendulumRecording& recording,
                                int observed, int num_frames = 0,
                                ForecastUse use = ForecastUse::kBoth);

@@ -1,4 +1,3 @@
-// ident: steps of a path, and how well they are predicted.
 #include "ident/prediction/predicted_steps.h"
 
 #include <algorithm>
@@ -106,9 +105,7 @@ std::string PredictedStepsText(const PendulumRecording& recording, const Predict
                                       : "stands");
     }
     if (parts.empty()) continue;
-    text += recording.subject_ids[n] + ": ";
-    for (size_t i = 0; i < parts.size(); ++i) text += (i > 0 ? ", " : "") + parts[i];
-    text += "\n";
+    text += recording.subject_ids[n] + ": " + Joined(parts) + "\n";
   }
   if (prediction.feet_step && prediction.path.num_people() > kMostPeopleWithMargins) {
     text += "P(step) is left out: it is computed for at most " +
@@ -187,45 +184,23 @@ LiftOffError LiftOffErrorOf(const std::vector<StepPrediction>& predictions) {
   std::vector<double> errors;
   LiftOffError result;
   for (const StepPrediction& p : predictions) {
-    if (!p.timing || !p.timing->lift_off || !p.timing->recorded_lift_off) continue;
-    errors.push_back(*p.timing->lift_off - *p.timing->recorded_lift_off);
-    result.mean_absolute += std::abs(errors.back());
+    if (!p.timing) continue;
+    if (p.timing->lift_off && p.timing->recorded_lift_off) {
+      errors.push_back(*p.timing->lift_off - *p.timing->recorded_lift_off);
+      result.mean_absolute += std::abs(errors.back());
+    }
+    if (p.timing->landing && p.timing->recorded_travel) {
+      ++result.landed;
+      result.place += (p.timing->travel - *p.timing->recorded_travel).norm();
+    }
   }
-  if (errors.empty()) return result;
+  if (errors.empty()) return {};
   result.people = static_cast<int>(errors.size());
   result.mean_absolute /= result.people;
   result.median = Median(errors);
-  for (const StepPrediction& p : predictions) {
-    if (!p.timing || !p.timing->landing || !p.timing->recorded_travel) continue;
-    ++result.landed;
-    result.place += (p.timing->travel - *p.timing->recorded_travel).norm();
-  }
   if (result.landed > 0) result.place /= result.landed;
   return result;
 }
-
-}  // namespace
-
-StepScore ScoreSteps(const std::vector<StepPrediction>& predictions) {
-  StepScore score;
-  score.tracks = static_cast<int>(predictions.size());
-  if (predictions.empty()) return score;
-  std::set<std::string> people;
-  for (const StepPrediction& p : predictions) {
-    score.stepped += p.stepped ? 1 : 0;
-    people.insert(p.person);
-  }
-  score.people = static_cast<int>(people.size());
-  score.brier = Brier(predictions);
-  score.auc = AreaUnderCurve(predictions);
-  score.brier_error = JackknifeError(predictions, people, Brier);
-  score.auc_error = JackknifeError(predictions, people, AreaUnderCurve);
-  score.fifths = Fifths(predictions);
-  score.lift_off = LiftOffErrorOf(predictions);
-  return score;
-}
-
-namespace {
 
 using Json = nlohmann::ordered_json;
 
@@ -251,19 +226,28 @@ StepSummary StepSummaryOf(const std::vector<PendulumRecording>& recordings) {
   return summary;
 }
 
-Json MedianJson(const std::vector<double>& values) {
-  return values.empty() ? Json(nullptr) : Json(Median(values));
-}
-
-Json StepJson(const FootStep& step, double dt) {
-  return {{"foot", NameOf(step.foot)},
-          {"lift_off_s", step.lift_off * dt},
-          {"landing_s", step.finished ? Json(step.landing * dt) : Json(nullptr)},
-          {"length_m", step.Length()},
-          {"direction_deg", step.Direction() * 180.0 / M_PI}};
-}
+constexpr int kFewForAuc = 3;
 
 }  // namespace
+
+StepScore ScoreSteps(const std::vector<StepPrediction>& predictions) {
+  StepScore score;
+  score.tracks = static_cast<int>(predictions.size());
+  if (predictions.empty()) return score;
+  std::set<std::string> people;
+  for (const StepPrediction& p : predictions) {
+    score.stepped += p.stepped ? 1 : 0;
+    people.insert(p.person);
+  }
+  score.people = static_cast<int>(people.size());
+  score.brier = Brier(predictions);
+  score.auc = AreaUnderCurve(predictions);
+  score.brier_error = JackknifeError(predictions, people, Brier);
+  score.auc_error = JackknifeError(predictions, people, AreaUnderCurve);
+  score.fifths = Fifths(predictions);
+  score.lift_off = LiftOffErrorOf(predictions);
+  return score;
+}
 
 std::string StepsReport(const std::vector<PendulumRecording>& recordings, bool per_recording) {
   std::string text;
@@ -295,47 +279,26 @@ void AddStepsJson(const std::vector<PendulumRecording>& recordings, Json* json) 
     for (const PersonSteps& person : recordings[i].steps) {
       Json steps = Json::array();
       for (const FootStep& step : person.steps) {
-        steps.push_back(StepJson(step, recordings[i].scene.dt));
+        const double dt = recordings[i].scene.dt;
+        steps.push_back({{"foot", NameOf(step.foot)},
+                         {"lift_off_s", step.lift_off * dt},
+                         {"landing_s", step.finished ? Json(step.landing * dt) : Json(nullptr)},
+                         {"length_m", step.Length()},
+                         {"direction_deg", step.Direction() * 180.0 / M_PI}});
       }
       people.push_back(std::move(steps));
     }
     json->at("recordings").at(i)["steps"] = std::move(people);
   }
   const StepSummary summary = StepSummaryOf(recordings);
+  const auto median = [](const std::vector<double>& values) {
+    return values.empty() ? Json(nullptr) : Json(Median(values));
+  };
   (*json)["steps"] = {{"people", summary.people},
                       {"people_who_step", summary.stepping},
-                      {"first_lift_off_median_s", MedianJson(summary.lift_off)},
-                      {"first_length_median_m", MedianJson(summary.length)}};
+                      {"first_lift_off_median_s", median(summary.lift_off)},
+                      {"first_length_median_m", median(summary.length)}};
 }
-
-namespace {
-
-constexpr int kFewForAuc = 3;
-
-std::string FifthText(const StepFifth& fifth) {
-  return Rounded(fifth.predicted, 2) + " -> " + Rounded(fifth.observed, 2);
-}
-
-// "+0.05 s, mean |.| 0.11 s, 23 people; place off by 0.14 m"
-std::string LiftOffText(const LiftOffError& error) {
-  return (error.median > 0.0 ? "+" : "") + Rounded(error.median, 2) + " s, mean |.| " +
-         Rounded(error.mean_absolute, 2) + " s, " + std::to_string(error.people) + " people" +
-         (error.landed > 0 ? "; place off by " + Rounded(error.place, 2) + " m" : "");
-}
-
-// Adds a row where feet step in some model.
-void AddLiftOff(const NamedStepScores& scores, TextTable* table) {
-  std::vector<std::string> row = {"first lift-off, predicted - recorded: median"};
-  bool any = false;
-  for (const auto& [name, score] : scores) {
-    const LiftOffError& error = score->lift_off;
-    any = any || error.people > 0;
-    row.push_back(error.people == 0 ? std::string() : LiftOffText(error));
-  }
-  if (any) table->Add(row);
-}
-
-}  // namespace
 
 std::string StepProbabilityText(const StepProbability& p) {
   const double a = p.coefficients[0], b = p.coefficients[1];
@@ -371,20 +334,31 @@ TextTable StepScoresTable(const NamedStepScores& scores) {
   add("tracks with a step / tracks", [](const StepScore& s) {
     return std::to_string(s.stepped) + " / " + std::to_string(s.tracks);
   });
-  // With a single person who steps, or one who does not, the AUC says no more than who stands
-  // where.
+  // The AUC of very few people who step, or who do not, depends on who stands where.
   add("AUC", [](const StepScore& s) {
     return std::min(s.stepped, s.tracks - s.stepped) < kFewForAuc ? std::string("- (too few)")
                                                                   : WithError(s.auc, s.auc_error);
   });
   add("Brier score", [](const StepScore& s) { return WithError(s.brier, s.brier_error); });
   for (size_t i = 0; i < fifths; ++i) {
-    const std::string title = "fifth " + std::to_string(i + 1) + " of P(step): mean -> share";
-    add(title, [i](const StepScore& s) {
-      return i < s.fifths.size() ? FifthText(s.fifths[i]) : std::string();
+    add("fifth " + std::to_string(i + 1) + " of P(step): mean -> share", [i](const StepScore& s) {
+      return i >= s.fifths.size()
+                 ? std::string()
+                 : Rounded(s.fifths[i].predicted, 2) + " -> " + Rounded(s.fifths[i].observed, 2);
     });
   }
-  AddLiftOff(known, &table);
+  const bool feet_step = std::any_of(known.begin(), known.end(), [](const auto& score) {
+    return score.second->lift_off.people > 0;
+  });
+  if (!feet_step) return table;
+  // "+0.05 s, mean |.| 0.11 s, 23 people; place off by 0.14 m"
+  add("first lift-off, predicted - recorded: median", [](const StepScore& s) -> std::string {
+    const LiftOffError& error = s.lift_off;
+    if (error.people == 0) return "";
+    return (error.median > 0.0 ? "+" : "") + Rounded(error.median, 2) + " s, mean |.| " +
+           Rounded(error.mean_absolute, 2) + " s, " + std::to_string(error.people) + " people" +
+           (error.landed > 0 ? "; place off by " + Rounded(error.place, 2) + " m" : "");
+  });
   return table;
 }
 
@@ -395,18 +369,6 @@ std::string StepScoresText(const NamedStepScores& scores) {
   for (const auto& [name, score] : scores) people = std::max(people, score->people);
   return table.ToString() + "+-: standard errors by leaving out each of " + std::to_string(people) +
          " people\n";
-}
-
-Chart ReliabilityChart(const StepScore& score) {
-  Chart chart{"who steps: share over probability", "predicted probability of a step"};
-  chart.y_from = 0.0;
-  chart.y_to = 1.0;
-  ChartPoints shares;
-  for (const StepFifth& fifth : score.fifths) shares.emplace_back(fifth.predicted, fifth.observed);
-  chart.lines.push_back({{{0.0, 0.0}, {1.0, 1.0}}, kLimitLook, false});
-  chart.lines.push_back({shares, kPredictedLook, false});
-  chart.lines.push_back({shares, kPredictedLook, true});
-  return chart;
 }
 
 }  // namespace pushid

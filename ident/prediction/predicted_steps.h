@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "datasets/loading/pendulum_recording.h"
-#include "ident/figures/chart.h"
 #include "ident/figures/text_table.h"
 #include "ident/model/identified_model.h"
 #include "ident/prediction/prediction.h"
@@ -20,20 +19,20 @@ namespace pushid {
 // A person's foot in a path, m.
 Eigen::Vector2d PlaceOf(Foot foot, const PendulumState<double>& state);
 
-// In order; lift-off: the first frame after that in which the foot still stood.
+// Steps in order; lift-off: the frame after the last one in which the foot stood.
 std::vector<FootStep> PredictedSteps(const RolloutPath<double>& path, int person);
 
-// Where a foot stands: from a landing, or frame 0, to the lift-off after it, or the end.
+// A place where a foot stands: from a landing, or frame 0, to the next lift-off, or the end.
 struct Footprint {
   Foot foot = Foot::kLeft;
   int landing = 0, lift_off = 0;                    // frames: the first on it, the first off again
   Eigen::Vector2d place = Eigen::Vector2d::Zero();  // of the ankle, m
 };
-// By landing. start: of frame 0; steps: by lift-off.
+// Footprints by landing. start: the state at frame 0; steps: by lift-off.
 std::vector<Footprint> Footprints(const PendulumState<double>& start,
                                   const std::vector<FootStep>& steps, int num_frames);
-// Everybody's footprints, recorded and predicted; none on ground that moves, and no predicted ones
-// where the model's feet do not step, or where later frames than the first were seen.
+// Footprints of all people, recorded and predicted; none on ground that moves, and no predicted
+// ones where the model's feet do not step, or where later frames than the first were seen.
 using FootprintsOfPeople = std::vector<std::vector<Footprint>>;
 FootprintsOfPeople RecordedFootprints(const PendulumRecording& recording);
 FootprintsOfPeople PredictedFootprints(const PendulumRecording& recording,
@@ -48,7 +47,7 @@ std::vector<Eigen::Vector2d> CapturePath(const std::vector<Vector3<double>>& hip
 // model says nothing of steps.
 std::string PredictedStepsText(const PendulumRecording& recording, const Prediction& prediction);
 
-// How well it is predicted who steps.
+// Scores of predictions of who steps.
 //
 //   Brier score  mean of (p - stepped)^2
 //   AUC          probability that somebody who steps has a higher p than somebody who does not
@@ -73,7 +72,7 @@ struct StepPrediction {
   double probability = 0.0;  // of a step
   bool stepped = false;
   std::string person = {};  // id
-  // Where the model's feet step. In a cross-validation: of the first fold that held it out.
+  // Known where the model's feet step; in a cross-validation that of the first fold.
   std::optional<StepTiming> timing = {};
 };
 
@@ -83,9 +82,9 @@ struct StepFifth {
 };
 
 struct LiftOffError {
-  int people = 0;                            // who step in both
+  int people = 0;                            // number of people who step in both
   double median = 0.0, mean_absolute = 0.0;  // s; positive: predicted too late
-  int landed = 0;                            // who land in both
+  int landed = 0;                            // number of people who land in both
   double place = 0.0;                        // m, mean over these
 };
 
@@ -123,8 +122,5 @@ using NamedStepScores = std::vector<std::pair<std::string, const StepScore*>>;
 TextTable StepScoresTable(const NamedStepScores& scores);
 // The table with what the errors are; empty where no score is known.
 std::string StepScoresText(const NamedStepScores& scores);
-
-// The fifths' observed share over the predicted probability, beside the diagonal.
-Chart ReliabilityChart(const StepScore& score);
 
 }  // namespace pushid

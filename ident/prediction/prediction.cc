@@ -1,4 +1,3 @@
-// ident: rollouts of an identified model.
 #include "ident/prediction/prediction.h"
 
 #include <algorithm>
@@ -19,48 +18,13 @@
 namespace pushid {
 namespace {
 
-void AddSteps(const IdentifiedModel& model, const PendulumRecording& recording,
-              Prediction* prediction) {
-  if (!model.step_probability) return;
-  for (double margin : StepMargins(model, recording, prediction->path)) {
-    prediction->steps.push_back(
-        {margin, model.step_probability->At(margin), model.step_probability->ErrorAt(margin)});
-  }
-}
-
 int FirstPushStart(const Scene& scene) {
   int start = scene.pushes.front().start_frame;
   for (const ScenePush& push : scene.pushes) start = std::min(start, push.start_frame);
   return start;
 }
 
-MaybeError CheckAgain(const std::vector<PushAgain>& again, const Scene& scene, int frames) {
-  const int length = scene.LastPushEnd() - FirstPushStart(scene);
-  int end = scene.LastPushEnd();
-  for (const auto& [frame, times] : again) {
-    const std::string start = "--push_again: frame " + std::to_string(frame);
-    if (!(times > 0.0) || !std::isfinite(times)) {
-      return Error{start + " has the strength " + Rounded(times, 3) +
-                   "; it must be a positive number, as in 40:1.5"};
-    }
-    if (frame < 0) return Error{start + " is negative; frames count from 0"};
-    if (frame < end) {
-      return Error{start +
-                   " comes before the push before it has ended; pushes must not overlap, and stand "
-                   "in ascending order: " +
-                   "give frame " + std::to_string(end) + " or a later one"};
-    }
-    // Row t drives the step from frame t to t + 1.
-    if (frame > frames - 2) {
-      return Error{start + " is too late for the " + std::to_string(frames) +
-                   " frames that are predicted; give an earlier one, or more --frames"};
-    }
-    end = frame + length;
-  }
-  return std::nullopt;
-}
-
-// Where a person stood: the ground tilts about there.
+// The place of a person at frame 0, about which the ground tilts.
 Vector3<double> Origin(const Scene& scene, int person) {
   const ScenePerson& who = scene.people[person];
   return {who.start.q[0], who.start.q[1], who.body.cart_height};
@@ -114,7 +78,11 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
     }
     prediction.hip.push_back(std::move(hip));
   }
-  AddSteps(model, recording, &prediction);
+  if (!model.step_probability) return prediction;
+  for (double margin : StepMargins(model, recording, prediction.path)) {
+    prediction.steps.push_back(
+        {margin, model.step_probability->At(margin), model.step_probability->ErrorAt(margin)});
+  }
   return prediction;
 }
 
@@ -198,7 +166,7 @@ Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecordi
   prediction.status = RollOn<double>(recording.scene, &forces, from, &prediction.path);
   if (!prediction.status.ok) return prediction;
   for (int n = 0; n < people; ++n) {
-    // From where the hip was seen, which the rod of frame 0 puts elsewhere.
+    // The rod of frame 0 puts the hip elsewhere than it was seen.
     const auto tip = [&](int t) {
       return HipPosition(prediction.BodyAt(recording.scene, t, n), prediction.path.At(t, n).q);
     };
@@ -239,7 +207,30 @@ MaybeError CheckChangedPushes(const ChangedPushes& changed, const PendulumRecord
                  " has no push: leave out --push_scale and --push_again"};
   }
   if (changed.again.empty()) return std::nullopt;
-  return CheckAgain(changed.again, recording.scene, frames);
+  const Scene& scene = recording.scene;
+  const int length = scene.LastPushEnd() - FirstPushStart(scene);
+  int end = scene.LastPushEnd();
+  for (const auto& [frame, times] : changed.again) {
+    const std::string start = "--push_again: frame " + std::to_string(frame);
+    if (!(times > 0.0) || !std::isfinite(times)) {
+      return Error{start + " has the strength " + Rounded(times, 3) +
+                   "; it must be a positive number, as in 40:1.5"};
+    }
+    if (frame < 0) return Error{start + " is negative; frames count from 0"};
+    if (frame < end) {
+      return Error{start +
+                   " comes before the push before it has ended; pushes must not overlap, and stand "
+                   "in ascending order: " +
+                   "give frame " + std::to_string(end) + " or a later one"};
+    }
+    // Row t drives the step from frame t to t + 1.
+    if (frame > frames - 2) {
+      return Error{start + " is too late for the " + std::to_string(frames) +
+                   " frames that are predicted; give an earlier one, or more --frames"};
+    }
+    end = frame + length;
+  }
+  return std::nullopt;
 }
 
 PendulumRecording WithPushes(PendulumRecording recording, const ChangedPushes& changed) {

@@ -14,7 +14,7 @@
 
 namespace pushid {
 
-// What is predicted of one person's steps (fit/step_probability.h).
+// The predicted step of one person (fit/step_probability.h).
 struct PredictedStep {
   double margin = 0.0;  // m
   double probability = 0.0, error = 0.0;
@@ -28,16 +28,16 @@ struct HipBand {
 struct Prediction {
   RolloutStatus status;
   RolloutPath<double> path;                       // frames before a failure are valid
-  ForceTrace forces;                              // what drove it, part by part
-  std::vector<ForcePart> parts;                   // those that reports list
+  ForceTrace forces;                              // forces that drove it, part by part
+  std::vector<ForcePart> parts;                   // parts that reports list
   std::vector<std::vector<Vector3<double>>> hip;  // [person][frame], m; empty after a failure
   bool rod_moves = false;
   std::vector<double> rod_lift;  // of each person, or one for everybody
   bool feet_step = false;        // the path has feet that step
-  // One per person; empty after a failure and where the model says nothing of steps.
+  // One value per person; empty after a failure and where the model has no step probability.
   std::vector<PredictedStep> steps;
-  // Where first frames were seen (online_predictor.h): how many, with frame 0, and a band for each
-  // person. 0 and none otherwise.
+  // Number of first frames that were seen (online_predictor.h), frame 0 among them, and a band for
+  // each person; 0 and none where none were.
   int observed = 0;
   std::vector<HipBand> bands;
 
@@ -49,7 +49,7 @@ struct Prediction {
   }
 };
 
-// From frame 0 and the push alone. num_frames: 0 means as many as the recording has.
+// The rollout from frame 0 and the push alone. num_frames: 0 means as many as the recording has.
 Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
                    int num_frames = 0);
 
@@ -63,13 +63,13 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
 Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
                              int observed);
 
-// What is odd about recordings that a model is to predict: recordings in other units than they say,
-// people who stand together under a model without contact, pushes beyond those of the fit.
-// Sentences for GroupedWarnings.
+// Oddities of recordings that a model is to predict: other units than they say, people who stand
+// together under a model without contact, pushes beyond those of the fit. Sentences for
+// GroupedWarnings.
 Warnings InputWarnings(const IdentifiedModel& model,
                        const std::vector<PendulumRecording>& recordings);
 
-// What if a recording's people were pushed harder, or again?
+// A recording whose people are pushed harder, or again.
 //
 //   ChangedPushes changed;
 //   changed.scale = 1.37;      // every force and torque times so much
@@ -100,14 +100,14 @@ struct ChangedPushes {
 MaybeError CheckChangedPushes(const ChangedPushes& changed, const PendulumRecording& recording,
                               int frames);
 
-// Everything but the pushes stays, the recorded motion too.
+// The recording with other pushes; all else stays, the recorded motion too.
 PendulumRecording WithPushes(PendulumRecording recording, const ChangedPushes& changed);
 
 // "1.37 times the recorded push, at frames 0, 40 and 80 (2 times)".
 std::string ChangedPushesText(const ChangedPushes& changed, const PendulumRecording& recording);
 
-// What a model sees from ground that moves, as the laboratory sees it: for files and pictures.
-// Errors are the same in either.
+// Motion on ground that moves, as the laboratory sees it: for files and pictures. Errors are the
+// same in either.
 
 struct PredictiveBands;
 

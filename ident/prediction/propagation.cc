@@ -1,4 +1,3 @@
-// ident: frames to causes, causes to moments, moments to words.
 #include "ident/prediction/propagation.h"
 
 #include <algorithm>
@@ -18,13 +17,6 @@ constexpr double kStill = 0.05;    // m/s
 
 enum Series : int { kPushed, kOthers, kAnswer, kNet };
 
-std::array<double, 4> ForcesAlong(const NetForce<double>& force, const Eigen::Vector2d& u) {
-  const auto along = [&](ForcePart part) { return force[part].head<2>().dot(u); };
-  const double push = along(ForcePart::kPush) + along(ForcePart::kTail);
-  const double others = along(ForcePart::kInteraction), net = force.Total().head<2>().dot(u);
-  return {push, others, net - push - others, net};
-}
-
 Cause CauseOf(const std::array<double, 4>& forces) {
   int largest = kPushed;
   for (int i : {kOthers, kAnswer}) {
@@ -41,67 +33,37 @@ Series SeriesOf(Cause cause) {
   return cause == Cause::kPush ? kPushed : cause == Cause::kOwn ? kAnswer : kOthers;
 }
 
-// Frames of one cause, one after the other.
-std::vector<StoryMoment> Runs(const ForceStory& story) {
-  std::vector<StoryMoment> runs;
-  for (int t = 0; t < static_cast<int>(story.forces.size()); ++t) {
-    const Cause cause = CauseOf(story.forces[t]);
-    if (runs.empty() || runs.back().cause != cause) runs.push_back({t, t, cause, 0, 0, ""});
-    runs.back().to = t + 1;
-  }
-  return runs;
-}
-
-// The cause of which a series of short runs has most.
-Cause DominantCause(const ForceStory& story, const std::vector<StoryMoment>& runs) {
-  std::map<Cause, double> sums;
-  for (const StoryMoment& run : runs) {
-    for (int t = run.from; t < run.to; ++t) {
-      sums[run.cause] += std::abs(story.forces[t][SeriesOf(run.cause)]);
-    }
-  }
-  return std::max_element(
-             sums.begin(), sums.end(),
-             [](const auto& one, const auto& other) { return one.second < other.second; })
-      ->first;
-}
-
-void Append(const StoryMoment& moment, std::vector<StoryMoment>* moments) {
-  if (!moments->empty() && moments->back().cause == moment.cause) {
-    moments->back().to = moment.to;
-  } else {
-    moments->push_back(moment);
-  }
-}
-
-// Runs of a cause; short ones belong to what was before unless a series of them lasts. A push is
-// told however short it is.
-std::vector<StoryMoment> Moments(const ForceStory& story, double dt) {
-  std::vector<StoryMoment> moments, shorts;
-  const auto take_shorts = [&] {
-    if (shorts.empty()) return;
-    StoryMoment all = shorts.front();
-    all.to = shorts.back().to;
-    const bool lasts = (all.to - all.from) * dt >= kShortest;
-    if (lasts || moments.empty()) {
-      all.cause = DominantCause(story, shorts);
-      Append(all, &moments);
-    } else {
-      moments.back().to = all.to;
-    }
-    shorts.clear();
+// The cause of each frame. Runs of a cause that are shorter than kShortest belong to what was
+// before, unless a series of them lasts: then the cause that such a series has most of is that of
+// them all. A push is told however short it is.
+std::vector<Cause> CausesOf(const std::vector<std::array<double, 4>>& forces, double dt) {
+  std::vector<Cause> causes;
+  for (const auto& frame : forces) causes.push_back(CauseOf(frame));
+  const int frames = static_cast<int>(causes.size());
+  const auto end_of_run = [&](int from) {
+    int end = from;
+    while (end < frames && causes[end] == causes[from]) ++end;
+    return end;
   };
-  for (const StoryMoment& run : Runs(story)) {
-    const bool told = run.cause == Cause::kPush || (run.to - run.from) * dt >= kShortest;
-    if (!told) {
-      shorts.push_back(run);
+  for (int from = 0, to = 0; from < frames; from = to) {
+    for (to = from; to < frames;) {
+      const int end = end_of_run(to);
+      if (causes[to] == Cause::kPush || (end - to) * dt >= kShortest) break;
+      to = end;
+    }
+    if (to == from) {
+      to = end_of_run(from);
       continue;
     }
-    take_shorts();
-    Append(run, &moments);
+    std::map<Cause, double> sums;
+    for (int t = from; t < to; ++t) sums[causes[t]] += std::abs(forces[t][SeriesOf(causes[t])]);
+    const auto most = std::max_element(
+        sums.begin(), sums.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    const bool lasts = (to - from) * dt >= kShortest;
+    const Cause cause = lasts || from == 0 ? most->first : causes[from - 1];
+    std::fill(causes.begin() + from, causes.begin() + to, cause);
   }
-  take_shorts();
-  return moments;
+  return causes;
 }
 
 // The nearest person behind (side -1) or in front (side 1) at a frame; empty where nobody stands.
@@ -122,10 +84,6 @@ std::string Neighbour(const PendulumRecording& recording, const Prediction& pred
   return name;
 }
 
-std::string Forces(const StoryMoment& moment) {
-  return ", up to " + Rounded(moment.peak, 2) + " N (" + Rounded(moment.impulse, 2) + " N s)";
-}
-
 std::string Words(const PendulumRecording& recording, const Prediction& prediction, int person,
                   const StoryMoment& moment, const Eigen::Vector2d& u) {
   const auto by = [&](double side) {
@@ -133,27 +91,119 @@ std::string Words(const PendulumRecording& recording, const Prediction& predicti
     return name.empty() ? "" : " by " + name;
   };
   const Eigen::Vector2d velocity = prediction.path.At(moment.from, person).qd.head<2>();
+  const std::string forces =
+      ", up to " + Rounded(moment.peak, 2) + " N (" + Rounded(moment.impulse, 2) + " N s)";
   switch (moment.cause) {
     case Cause::kNothing:
       return velocity.norm() < kStill ? "still" : "moves on without force";
     case Cause::kPush:
-      return "pushed" + Forces(moment);
+      return "pushed" + forces;
     case Cause::kFromBehind:
-      return "pushed from behind" + by(-1.0) + Forces(moment);
+      return "pushed from behind" + by(-1.0) + forces;
     case Cause::kFromInFront:
-      return "held up from in front" + by(1.0) + Forces(moment);
+      return "held up from in front" + by(1.0) + forces;
     case Cause::kOwn:
-      return (moment.impulse * velocity.dot(u) < 0.0 ? "brakes" : "steps on") + Forces(moment);
+      return (moment.impulse * velocity.dot(u) < 0.0 ? "brakes" : "steps on") + forces;
   }
   return "";
 }
 
-void Measure(const ForceStory& story, double dt, StoryMoment* moment) {
-  const Series series = SeriesOf(moment->cause);
-  for (int t = moment->from; t < moment->to; ++t) {
-    moment->peak = std::max(moment->peak, std::abs(story.forces[t][series]));
-    moment->impulse += dt * story.forces[t][series];
+using Vector2d = Eigen::Vector2d;
+
+constexpr int kMinMovers = 3;     // for a speed
+constexpr int kHalfVelocity = 3;  // frames on either side of a velocity: 2 mm of noise are 0.03 m/s
+
+// People without onsets and momenta: rank and distance.
+std::vector<PersonPropagation> RankedPeople(const PendulumRecording& recording) {
+  const int people = recording.num_people();
+  const Vector2d from = recording.scene.people[recording.pushed_person].start.q.head<2>();
+  std::vector<PersonPropagation> ranked(people);
+  for (int n = 0; n < people; ++n) {
+    ranked[n].distance = (recording.scene.people[n].start.q.head<2>() - from).norm();
   }
+  std::vector<int> order(people);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return ranked[a].distance < ranked[b].distance; });
+  for (int rank = 0; rank < people; ++rank) ranked[order[rank]].rank = rank;
+  return ranked;
+}
+
+// Persons by rank.
+std::vector<int> ByRank(const std::vector<PersonPropagation>& people) {
+  std::vector<int> order(people.size());
+  for (size_t n = 0; n < people.size(); ++n) order[people[n].rank] = static_cast<int>(n);
+  return order;
+}
+
+double PeakMomentum(const HipPath& hip, double mass, const Vector2d& along, double dt) {
+  double peak = 0.0;
+  const int frames = static_cast<int>(hip.size());
+  for (int t = 0; t + 2 * kHalfVelocity < frames; ++t) {
+    const Vector2d step = (hip[t + 2 * kHalfVelocity] - hip[t]).head<2>();
+    peak = std::max(peak, mass * step.dot(along) / (2 * kHalfVelocity * dt));
+  }
+  return peak;
+}
+
+void AddOnset(const PersonPropagation& person, int frames, PropagationScore* score) {
+  auto& f = score->figures;
+  const int measured = person.onset_measured, predicted = person.onset_predicted;
+  auto add = [&f](PropagationFigure figure, double value) {
+    f[figure].sum += value;
+    f[figure].weight += 1.0;
+  };
+  if (measured < 0) {
+    add(kFalseMovers, predicted >= 0 ? 1.0 : 0.0);
+    add(kBystanderFrames, frames);
+    return;
+  }
+  add(kMissedMovers, predicted < 0 ? 1.0 : 0.0);
+  add(kOnsetErrorWithMissed, std::abs((predicted < 0 ? frames - 1 : predicted) - measured));
+  if (predicted < 0) return;
+  add(kOnsetError, std::abs(predicted - measured));
+  add(kOnsetBias, predicted - measured);
+  if (person.rank > 0) add(kOnsetErrorReached, std::abs(predicted - measured));
+}
+
+void AddSpeed(double dt, PropagationScore* score) {
+  const auto slowness = [&](int PersonPropagation::*onset) {
+    std::vector<double> distance, time;
+    for (const PersonPropagation& person : score->people) {
+      if (person.*onset < 0) continue;
+      distance.push_back(person.distance);
+      time.push_back(person.*onset * dt);
+    }
+    return Slowness(distance, time);
+  };
+  const auto measured = slowness(&PersonPropagation::onset_measured);
+  const auto predicted = slowness(&PersonPropagation::onset_predicted);
+  auto& f = score->figures;
+  if (measured) f[kSlownessMeasured] = {*measured, 1.0};
+  if (predicted) f[kSlownessPredicted] = {*predicted, 1.0};
+  if (measured && predicted) f[kSlownessDifference] = {*predicted - *measured, 1.0};
+}
+
+// v = sum s_r / sum w_r; its variance by linearization, n/(n-1) sum (s_r - v w_r)^2 / (sum w_r)^2.
+PropagationMean RatioMean(const std::vector<const PropagationScore*>& scores, int figure) {
+  PropagationMean mean;
+  double sum = 0.0, recordings = 0.0;
+  for (const PropagationScore* score : scores) {
+    const Ratio& ratio = score->figures[figure];
+    sum += ratio.sum;
+    mean.weight += ratio.weight;
+    recordings += ratio.weight > 0.0 ? 1.0 : 0.0;
+  }
+  if (!mean.known()) return mean;
+  mean.value = sum / mean.weight;
+  if (recordings < 2.0) return mean;
+  double squares = 0.0;
+  for (const PropagationScore* score : scores) {
+    const Ratio& ratio = score->figures[figure];
+    squares += std::pow(ratio.sum - mean.value * ratio.weight, 2);
+  }
+  mean.error = std::sqrt(recordings / (recordings - 1.0) * squares) / mean.weight;
+  return mean;
 }
 
 }  // namespace
@@ -162,12 +212,23 @@ ForceStory StoryOf(const PendulumRecording& recording, const Prediction& predict
   const Eigen::Vector2d u = PushDirection(recording);
   ForceStory story{person, {}, {}};
   for (int t = 0; t < prediction.path.num_frames(); ++t) {
-    story.forces.push_back(ForcesAlong(prediction.forces.At(t, person), u));
+    const NetForce<double>& force = prediction.forces.At(t, person);
+    const auto along = [&](ForcePart part) { return force[part].head<2>().dot(u); };
+    const double push = along(ForcePart::kPush) + along(ForcePart::kTail);
+    const double others = along(ForcePart::kInteraction), net = force.Total().head<2>().dot(u);
+    story.forces.push_back({push, others, net - push - others, net});
   }
   const double dt = recording.scene.dt;
-  story.moments = Moments(story, dt);
+  const std::vector<Cause> causes = CausesOf(story.forces, dt);
+  for (int t = 0; t < static_cast<int>(causes.size()); ++t) {
+    if (t == 0 || causes[t] != causes[t - 1]) story.moments.push_back({t, t, causes[t], 0, 0, ""});
+    StoryMoment& moment = story.moments.back();
+    const double force = story.forces[t][SeriesOf(causes[t])];
+    moment.to = t + 1;
+    moment.peak = std::max(moment.peak, std::abs(force));
+    moment.impulse += dt * force;
+  }
   for (StoryMoment& moment : story.moments) {
-    Measure(story, dt, &moment);
     moment.text = Words(recording, prediction, person, moment, u);
   }
   return story;
@@ -228,98 +289,6 @@ ContactEnergyBalance BalanceContactEnergy(const RolloutPath<double>& path, const
   return balance;
 }
 
-Vector4<double> PushImpulse(const ForceTrace& forces, int person, double dt) {
-  Vector4<double> impulse = Vector4<double>::Zero();
-  for (int t = 0; t + 1 < forces.num_frames(); ++t) {
-    const NetForce<double>& force = forces.At(t, person);
-    impulse += dt * (force[ForcePart::kPush] + force[ForcePart::kTail]);
-  }
-  return impulse;
-}
-
-namespace {
-
-using HipPath = std::vector<Vector3<double>>;
-using Vector2d = Eigen::Vector2d;
-
-constexpr int kMinMovers = 3;     // for a speed
-constexpr int kHalfVelocity = 3;  // frames on either side of a velocity: 2 mm of noise are 0.03 m/s
-
-// People without onsets and momenta: rank and distance.
-std::vector<PersonPropagation> RankedPeople(const PendulumRecording& recording) {
-  const int people = recording.num_people();
-  const Vector2d from = recording.scene.people[recording.pushed_person].start.q.head<2>();
-  std::vector<PersonPropagation> ranked(people);
-  for (int n = 0; n < people; ++n) {
-    ranked[n].distance = (recording.scene.people[n].start.q.head<2>() - from).norm();
-  }
-  std::vector<int> order(people);
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return ranked[a].distance < ranked[b].distance; });
-  for (int rank = 0; rank < people; ++rank) ranked[order[rank]].rank = rank;
-  return ranked;
-}
-
-// Persons by rank.
-std::vector<int> ByRank(const std::vector<PersonPropagation>& people) {
-  std::vector<int> order(people.size());
-  for (size_t n = 0; n < people.size(); ++n) order[people[n].rank] = static_cast<int>(n);
-  return order;
-}
-
-double PeakMomentum(const HipPath& hip, double mass, const Vector2d& along, double dt) {
-  double peak = 0.0;
-  const int frames = static_cast<int>(hip.size());
-  for (int t = 0; t + 2 * kHalfVelocity < frames; ++t) {
-    const Vector2d step = (hip[t + 2 * kHalfVelocity] - hip[t]).head<2>();
-    peak = std::max(peak, mass * step.dot(along) / (2 * kHalfVelocity * dt));
-  }
-  return peak;
-}
-
-std::optional<double> SlownessOf(const std::vector<PersonPropagation>& people,
-                                 int PersonPropagation::*onset, double dt) {
-  std::vector<double> distance, time;
-  for (const PersonPropagation& person : people) {
-    if (person.*onset < 0) continue;
-    distance.push_back(person.distance);
-    time.push_back(person.*onset * dt);
-  }
-  return Slowness(distance, time);
-}
-
-void AddOnset(const PersonPropagation& person, int frames, PropagationScore* score) {
-  auto& f = score->figures;
-  const int measured = person.onset_measured, predicted = person.onset_predicted;
-  auto add = [&f](PropagationFigure figure, double value) {
-    f[figure].sum += value;
-    f[figure].weight += 1.0;
-  };
-  if (measured < 0) {
-    add(kFalseMovers, predicted >= 0 ? 1.0 : 0.0);
-    add(kBystanderFrames, frames);
-    return;
-  }
-  add(kMissedMovers, predicted < 0 ? 1.0 : 0.0);
-  add(kOnsetErrorWithMissed, std::abs((predicted < 0 ? frames - 1 : predicted) - measured));
-  if (predicted < 0) return;
-  add(kOnsetError, std::abs(predicted - measured));
-  add(kOnsetBias, predicted - measured);
-  if (person.rank > 0) add(kOnsetErrorReached, std::abs(predicted - measured));
-}
-
-void AddSpeed(double dt, PropagationScore* score) {
-  const auto measured = SlownessOf(score->people, &PersonPropagation::onset_measured, dt);
-  const auto predicted = SlownessOf(score->people, &PersonPropagation::onset_predicted, dt);
-  auto& f = score->figures;
-  if (measured) f[kSlownessMeasured] = {*measured, 1.0};
-  if (predicted) f[kSlownessPredicted] = {*predicted, 1.0};
-  if (measured && predicted) f[kSlownessDifference] = {*predicted - *measured, 1.0};
-}
-
-}  // namespace
-
 const PropagationFigureInfo& Info(PropagationFigure figure) {
   static const PropagationFigureInfo kInfo[kNumPropagationFigures] = {
       {"onset_error_frames", "onset error, frames (who move in both)"},
@@ -343,9 +312,9 @@ const PropagationFigureInfo& Info(PropagationFigure figure) {
   return kInfo[figure];
 }
 
-int OnsetFrame(const std::vector<Vector3<double>>& hip, double distance) {
+int OnsetFrame(const HipPath& hip) {
   for (size_t t = 0; t < hip.size(); ++t) {
-    if ((hip[t] - hip[0]).head<2>().norm() >= distance) return static_cast<int>(t);
+    if ((hip[t] - hip[0]).head<2>().norm() >= kOnsetDistance) return static_cast<int>(t);
   }
   return -1;
 }
@@ -376,8 +345,7 @@ void PropagationScore::Divide(double by) {
   for (Ratio& ratio : figures) ratio = {ratio.sum / by, ratio.weight / by};
 }
 
-PropagationScore ScorePropagation(const PendulumRecording& recording,
-                                  const std::vector<HipPath>& predicted) {
+PropagationScore ScorePropagation(const PendulumRecording& recording, const HipPaths& predicted) {
   PropagationScore score;
   if (recording.scene.num_people() < 2) return score;
   const Vector2d along = PushDirection(recording);
@@ -418,7 +386,11 @@ void AddContactFigures(const IdentifiedModel& model, const PendulumRecording& re
     person.contact_work = balance.work[order[k]];
     crossed += balance.impulse[order[k]].head<2>().dot(along);
   }
-  const Vector4<double> push = PushImpulse(prediction.forces, recording.pushed_person, dt);
+  Eigen::Vector4d push = Eigen::Vector4d::Zero();  // tails included, over the path's steps
+  for (int t = 0; t + 1 < prediction.forces.num_frames(); ++t) {
+    const NetForce<double>& force = prediction.forces.At(t, recording.pushed_person);
+    push += dt * (force[ForcePart::kPush] + force[ForcePart::kTail]);
+  }
   auto& f = score->figures;
   f[kPushPassedOn] = {score->people[order[0]].impulse_on, push.head<2>().dot(along)};
   for (size_t k = 1; k + 1 < order.size();
@@ -432,32 +404,6 @@ void AddContactFigures(const IdentifiedModel& model, const PendulumRecording& re
   // first.
   if (model.options.interaction.Mutual()) f[kRestitution] = {balance.returned, balance.absorbed};
 }
-
-namespace {
-
-// v = sum s_r / sum w_r; its variance by linearization, n/(n-1) sum (s_r - v w_r)^2 / (sum w_r)^2.
-PropagationMean RatioMean(const std::vector<const PropagationScore*>& scores, int figure) {
-  PropagationMean mean;
-  double sum = 0.0, recordings = 0.0;
-  for (const PropagationScore* score : scores) {
-    const Ratio& ratio = score->figures[figure];
-    sum += ratio.sum;
-    mean.weight += ratio.weight;
-    recordings += ratio.weight > 0.0 ? 1.0 : 0.0;
-  }
-  if (!mean.known()) return mean;
-  mean.value = sum / mean.weight;
-  if (recordings < 2.0) return mean;
-  double squares = 0.0;
-  for (const PropagationScore* score : scores) {
-    const Ratio& ratio = score->figures[figure];
-    squares += std::pow(ratio.sum - mean.value * ratio.weight, 2);
-  }
-  mean.error = std::sqrt(recordings / (recordings - 1.0) * squares) / mean.weight;
-  return mean;
-}
-
-}  // namespace
 
 PropagationSummary SummarizePropagation(const std::vector<const PropagationScore*>& scores) {
   PropagationSummary summary;

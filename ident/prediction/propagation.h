@@ -64,11 +64,8 @@ struct ContactEnergyBalance {
 ContactEnergyBalance BalanceContactEnergy(const RolloutPath<double>& path, const ForceTrace& forces,
                                           double dt);
 
-// The integral of all pushes on a person, tails included, over the path's steps.
-Vector4<double> PushImpulse(const ForceTrace& forces, int person, double dt);
-
-// How a push travels through people: when each starts to move, how fast it goes from one to
-// the next, what it keeps of its momentum, and what contact does to its energy.
+// The travel of a push through people: each person's onset, the speed from one to the next, the
+// momentum that is passed on, and the work of contact.
 //
 // Onset: the first frame at which the hip is 2 cm, horizontally, from where it was at frame 0; -1
 // when it never is. A mover has a measured onset within the recording, a bystander has none; people
@@ -91,7 +88,7 @@ Vector4<double> PushImpulse(const ForceTrace& forces, int person, double dt);
 
 inline constexpr double kOnsetDistance = 0.02;  // m
 
-int OnsetFrame(const std::vector<Vector3<double>>& hip, double distance = kOnsetDistance);
+int OnsetFrame(const HipPath& hip);
 
 // Slope of onset time on distance, s/m; nothing for fewer than three people or equal distances.
 std::optional<double> Slowness(const std::vector<double>& distance_m,
@@ -102,7 +99,7 @@ struct PersonPropagation {
   double distance = 0.0;                          // m, from the pushed person's cart at frame 0
   int onset_measured = -1, onset_predicted = -1;  // frames
   double peak_momentum_measured = 0.0, peak_momentum_predicted = 0.0;  // N s, along the push
-  // From a model's rollout only.
+  // These two need a model's rollout.
   double contact_work = 0.0;  // J done on this person by contact
   double impulse_on = 0.0;    // N s, I_k of this person's rank
 };
@@ -150,11 +147,10 @@ struct PropagationScore {
   void Divide(double by);
 };
 
-// What hips alone tell. predicted: [person][frame]. Empty for a single person.
-PropagationScore ScorePropagation(const PendulumRecording& recording,
-                                  const std::vector<std::vector<Vector3<double>>>& predicted);
+// The score that hips alone give. predicted: [person][frame]. Empty for a single person.
+PropagationScore ScorePropagation(const PendulumRecording& recording, const HipPaths& predicted);
 
-// What the model's forces tell, added to the score of the same prediction.
+// Adds the figures of the model's forces to the score of the same prediction.
 void AddContactFigures(const IdentifiedModel& model, const PendulumRecording& recording,
                        const Prediction& prediction, PropagationScore* score);
 

@@ -1,4 +1,3 @@
-// ident: pushes by inverse dynamics, and where in a recording they are.
 #include "ident/push/push_estimation.h"
 
 #include <Eigen/Core>
@@ -16,14 +15,18 @@ namespace {
 
 constexpr double kDetectionSpan = 0.15;  // s, smoothing of the hip for detection
 constexpr int kSustained = 3;            // frames above the onset speed that make an onset
+constexpr double kOnsetSpeed = 0.1;      // m/s, of a hip that counts as moving
+constexpr double kEndFraction = 0.05;    // of the peak acceleration, below which a push is over
+
+MaybeError CheckPerson(const PendulumRecording& recording, int person) {
+  if (person >= 0 && person < recording.num_people()) return std::nullopt;
+  return Error{"recording " + recording.id + ": there is no person " + std::to_string(person) +
+               "; it has " + std::to_string(recording.num_people()) + ", counted from 0"};
+}
 
 MaybeError CheckEstimationOptions(const PendulumRecording& recording,
                                   const PushEstimationOptions& options) {
-  const std::string where = "recording " + recording.id + ": ";
-  if (options.person < 0 || options.person >= recording.num_people()) {
-    return Error{where + "there is no person " + std::to_string(options.person) + "; it has " +
-                 std::to_string(recording.num_people()) + ", counted from 0"};
-  }
+  if (MaybeError error = CheckPerson(recording, options.person)) return error;
   const int smoothing = options.smoothing_frames;
   if (smoothing != 0 && (smoothing < 5 || smoothing % 2 == 0)) {
     return Error{"a smoothing window of " + std::to_string(smoothing) +
@@ -40,117 +43,7 @@ std::vector<SmoothedSample> SmoothedHip(const PendulumRecording& recording, int 
   return SavitzkyGolay(hip, std::max(5, 2 * half + 1), recording.scene.dt);
 }
 
-bool StartsAtRest(const PendulumRecording& recording, int start,
-                  const PushEstimationOptions& options) {
-  if (options.initial_velocity) return *options.initial_velocity == InitialVelocity::kZero;
-  return SmoothedHip(recording, options.person)[start].rate.norm() <= options.onset_speed;
-}
-
-}  // namespace
-
-Result<PushWindow> DetectPushWindow(const PendulumRecording& recording,
-                                    const PushEstimationOptions& options) {
-  if (MaybeError wrong = CheckEstimationOptions(recording, options)) return *std::move(wrong);
-  const std::vector<SmoothedSample> hip = SmoothedHip(recording, options.person);
-  const int frames = recording.num_frames();
-  const auto speed = [&](int t) { return hip[t].rate.norm(); };
-
-  int onset = 0, above = 0;
-  for (; onset < frames && above < kSustained; ++onset) {
-    above = speed(onset) > options.onset_speed ? above + 1 : 0;
-  }
-  if (above < kSustained) {
-    return Error{"recording " + recording.id + ": the hip of person " +
-                 std::to_string(options.person) + " never moves faster than " +
-                 std::to_string(options.onset_speed) +
-                 " m/s for three frames, so no push is found; name the window or lower the speed"};
-  }
-  onset -= kSustained;
-  PushWindow window;
-  window.start = onset;
-  while (window.start > 0 && speed(window.start - 1) < speed(window.start)) --window.start;
-
-  // Along the way the person goes: mean direction of the first 0.15 s after the onset.
-  const int later =
-      std::min(frames - 1, onset + static_cast<int>(kDetectionSpan / recording.scene.dt));
-  const Eigen::Vector4d way = (hip[later].value - hip[window.start].value).normalized();
-  double peak = 0.0;
-  for (window.end = window.start + 1; window.end < frames - 1; ++window.end) {
-    const double acceleration = hip[window.end].acceleration.dot(way);
-    peak = std::max(peak, acceleration);
-    if (window.end > onset && acceleration <= options.end_fraction * peak) break;
-  }
-  return window;
-}
-
-Result<PushWindow> PushWindowFrom(const PushWindow& given, const PendulumRecording& recording,
-                                  const PushEstimationOptions& options) {
-  if (given.start >= 0 && given.end >= 0) return given;
-  const Result<PushWindow> found = DetectPushWindow(recording, options);
-  if (!found.ok()) return found;
-  return PushWindow{given.start >= 0 ? given.start : found.value().start,
-                    given.end >= 0 ? given.end : found.value().end};
-}
-
-MaybeError ParseInitialVelocity(const std::string& what, const std::string& name,
-                                std::optional<InitialVelocity>* value) {
-  if (name == "auto") return std::nullopt;
-  *value = FromName<InitialVelocity>(name);
-  if (*value && **value != InitialVelocity::kFree) return std::nullopt;
-  return Error{what + " is '" + name + "'; it must be zero, estimated or auto"};
-}
-
-Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const PushWindow& window,
-                                   const PushEstimationOptions& options) {
-  if (MaybeError wrong = CheckEstimationOptions(recording, options)) return *std::move(wrong);
-  const int frames = recording.num_frames();
-  if (window.start < 0 || window.end <= window.start || window.end >= frames) {
-    return Error{"recording " + recording.id + ": a push from frame " +
-                 std::to_string(window.start) + " to " + std::to_string(window.end) +
-                 " is not within its frames 0 to " + std::to_string(frames - 1)};
-  }
-  const double dt = recording.scene.dt;
-  std::vector<PendulumState<double>> states = recording.states[options.person];
-  if (options.smoothing_frames > 0) {
-    std::vector<Eigen::Vector4d> q;
-    for (const PendulumState<double>& state : states) q.push_back(state.q);
-    const std::vector<SmoothedSample> smoothed = SavitzkyGolay(q, options.smoothing_frames, dt);
-    for (int t = 0; t < frames; ++t) {
-      states[t].q = smoothed[t].value;
-      // The smoother's rate is not used: qd must be what an Euler step makes of q.
-      if (t > 0) states[t].qd = (states[t].q - states[t - 1].q) / dt;
-    }
-  }
-  if (window.start > 0 && StartsAtRest(recording, window.start, options)) {
-    states[window.start].qd.setZero();
-  }
-
-  EstimatedPush result;
-  result.start_speed = states[window.start].qd.head<2>().norm();
-  result.push.person = options.person;
-  result.push.start_frame = window.start;
-  const Body& body = recording.scene.people[options.person].body;
-  for (int t = window.start; t <= window.end; ++t) {
-    const PendulumState<double>& state = states[t];
-    const std::string_view outside = OutsideDomain(body, state);
-    if (!outside.empty()) {
-      return Error{"recording " + recording.id + ": " + std::string(outside) + " at frame " +
-                   std::to_string(t) + " is outside the model's domain of +-1.4 rad"};
-    }
-    result.motion.push_back(state);
-    if (t == window.end) break;
-    const Vector4<double> force =
-        InverseDynamics<double>(body, state, (states[t + 1].qd - state.qd) / dt);
-    result.push.force.push_back(force);
-    result.impulse += dt * force;
-    result.peak_force = std::max(result.peak_force, force.head<2>().norm());
-  }
-  return result;
-}
-
-namespace {
-
-constexpr double kNoise = 0.01;        // of the largest row: what no push ends with
+constexpr double kNoise = 0.01;        // of the largest row: smaller ones end no push
 constexpr double kLostImpulse = 0.01;  // of the whole, tolerated outside the recording
 
 // Integral of the samples' broken line from `from` to `to` (s), by the trapezoids in between.
@@ -168,39 +61,18 @@ Vector3<double> Impulse(const SensorRecord& record, double from, double to) {
   return sum;
 }
 
-Error Wrong(const PendulumRecording& recording, const std::string& what) {
-  return Error{"recording " + recording.id + ": " + what};
-}
-
-MaybeError CheckSensorOptions(const SensorRecord& record, const PendulumRecording& recording,
-                              const SensorPushOptions& options) {
-  if (options.person < 0 || options.person >= recording.num_people()) {
-    return Wrong(recording, "there is no person " + std::to_string(options.person));
-  }
-  const double length = options.direction.norm();
-  if (!record.is_vector && !(std::isfinite(length) && length > 0.0)) {
-    return Error{"the push direction must be a finite vector other than zero"};
-  }
-  if (!std::isfinite(options.height_fraction) || !std::isfinite(options.height_m.value_or(0.0)) ||
-      !std::isfinite(options.frame_zero_time_s)) {
-    return Error{"contact height and the time of frame 0 must be finite numbers"};
-  }
-  if (record.num_samples() < 2) return Error{"the record has no force samples", record.file};
-  return std::nullopt;
-}
-
 // A push that lies outside the recording, or is no greater than the idling. `empty`: no row holds
 // more than that.
-MaybeError CheckPushInside(const SensorRecord& record, const PendulumRecording& recording,
-                           const SensorPushOptions& options, bool empty) {
-  const double zero = options.frame_zero_time_s, margin = options.clock_error_s;
+MaybeError CheckPushInside(const SensorRecord& record, const SensorChoice& sensor,
+                           const PendulumRecording& recording, double margin, bool empty) {
+  const double zero = sensor.start_s.value_or(0.0);
   const double end = zero + (recording.num_frames() - 1) * recording.scene.dt;
   const Vector3<double> before = Impulse(record, record.time_s.front(), zero - margin);
   const Vector3<double> after = Impulse(record, end + margin, record.time_s.back());
   const Vector3<double> inside = Impulse(record, zero, end);
   // An idling sensor adds up outside the recording; only what exceeds it is a lost push.
   const double span = record.time_s.back() - record.time_s.front();
-  const double lost = before.norm() + after.norm() - options.idle_force * span;
+  const double lost = before.norm() + after.norm() - sensor.idle_force * span;
   if (lost > kLostImpulse * inside.norm() || (empty && lost > 0.0)) {
     return Error{
         Rounded(lost) + " N s of the push lie outside recording " + recording.id + " (" +
@@ -210,56 +82,10 @@ MaybeError CheckPushInside(const SensorRecord& record, const PendulumRecording& 
         record.file};
   }
   if (!empty) return std::nullopt;
-  return Error{"no force greater than " + Rounded(options.idle_force) + " N within recording " +
-                   recording.id,
-               record.file};
+  return Error{
+      "no force greater than " + Rounded(sensor.idle_force) + " N within recording " + recording.id,
+      record.file};
 }
-
-}  // namespace
-
-Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording& recording,
-                            const SensorPushOptions& options) {
-  if (MaybeError error = CheckSensorOptions(record, recording, options)) return *error;
-  // Row by row, then without the idle rows at both ends.
-  const double dt = recording.scene.dt, zero = options.frame_zero_time_s;
-  std::vector<Vector3<double>> rows;
-  for (int t = 0; t + 1 < recording.num_frames(); ++t) {
-    rows.push_back(Impulse(record, zero + (t - 0.5) * dt, zero + (t + 0.5) * dt) / dt);
-  }
-  double largest = 0.0;
-  for (const Vector3<double>& row : rows) largest = std::max(largest, row.norm());
-  const bool by_noise = options.idle_force < kNoise * largest;
-  const double resting = by_noise ? kNoise * largest : options.idle_force;
-  const auto idle = [resting](const Vector3<double>& row) { return !(row.norm() > resting); };
-  auto first = std::find_if_not(rows.begin(), rows.end(), idle);
-  auto last = std::find_if_not(rows.rbegin(), rows.rend(), idle).base();
-  // A push may begin or end within a row, of which little is left.
-  const auto some = [](const Vector3<double>& row) { return row.norm() > 0.0; };
-  if (by_noise && first != rows.begin() && some(first[-1])) --first;
-  if (by_noise && last != rows.end() && some(*last)) ++last;
-  if (MaybeError error = CheckPushInside(record, recording, options, first == rows.end())) {
-    return *error;
-  }
-  Push push;
-  push.person = options.person;
-  push.start_frame = static_cast<int>(first - rows.begin());
-  push.file = record.file;
-  const Body& body = recording.scene.people[options.person].body;
-  const std::vector<PendulumState<double>>& states = recording.states[options.person];
-  const double fraction = options.height_m
-                              ? HeightFraction(body, states[push.start_frame].q, *options.height_m)
-                              : options.height_fraction;
-  const double length = options.direction.norm();
-  for (auto row = first; row != last; ++row) {
-    const Vector4<double>& q = states[row - rows.begin()].q;
-    const Vector3<double> force =
-        record.is_vector ? *row : Vector3<double>(row->x() / length * options.direction);
-    push.force.push_back(GeneralizedForce(body, q, force, fraction));
-  }
-  return push;
-}
-
-namespace {
 
 constexpr double kCutShort = 0.2;    // of the peak
 constexpr double kOddGain = 3.0;     // beyond what friction and recovery blur
@@ -283,15 +109,6 @@ void AddPush(const Push& more, Push* sum) {
   sum->start_frame = start;
 }
 
-// The record as PushFromSensor takes it, but for the offset: vectors along the direction.
-TimedRecord AsVectors(const SensorRecord& record, const SensorChoice& sensor) {
-  TimedRecord timed{record, sensor.start_s.value_or(0.0)};
-  if (record.is_vector) return timed;
-  const Eigen::Vector3d along = sensor.direction.normalized();
-  for (Eigen::Vector3d& force : timed.record.force) force = force.x() * along;
-  return timed;
-}
-
 // A warning for a record that begins or ends while it measures a push: the rest of it is lost.
 std::string CutShort(const SensorRecord& record) {
   double peak = 0.0;
@@ -307,11 +124,10 @@ std::string CutShort(const SensorRecord& record) {
   return "";
 }
 
-struct ReadSensors {
-  std::vector<SensorChoice> choices;  // with what the motion's file says of them
-  std::vector<SensorRecord> records;
-  std::vector<std::string> warnings;
-  std::string how;
+// A sensor, with what the motion's file says of it, and what it measured.
+struct ReadSensorOf {
+  SensorChoice choice;
+  SensorRecord record;
 };
 
 // The clock at frame 0 of a sensor in a file of its own, when nothing is said of it: the motion's,
@@ -324,16 +140,17 @@ double ClockBeside(const SensorRecord& record, const RecordedPerson& person, dou
   return shared >= 0.5 * seconds ? begin : record.time_s.front() + person.skipped_s;
 }
 
-Result<ReadSensors> ReadAll(const SensorSetup& setup, const Recording& recorded, int person) {
-  ReadSensors read;
+Result<std::vector<ReadSensorOf>> ReadAll(const SensorSetup& setup, const Recording& recorded,
+                                          int person, SensorPush* result) {
+  std::vector<ReadSensorOf> read;
   const std::size_t count = setup.sensors.size();
-  read.how = count == 1
-                 ? "from the sensor, averaged over the frames"
+  result->how =
+      count == 1 ? "from the sensor, averaged over the frames"
                  : "from " + std::to_string(count) + " sensors together, averaged over the frames";
   for (SensorChoice sensor : setup.sensors) {
     const bool said = sensor.start_s.has_value();
     for (const RecordedPerson& one : recorded.people) FillFromMotion(one, &sensor);
-    Result<SensorRecord> record = ReadSensor(sensor, &read.warnings);
+    Result<SensorRecord> record = ReadSensor(sensor, &result->warnings);
     if (!record.ok()) return record.error();
     const bool together = sensor.start_s.has_value();
     if (!together) {
@@ -341,28 +158,21 @@ Result<ReadSensors> ReadAll(const SensorSetup& setup, const Recording& recorded,
                                    (recorded.num_frames() - 1) / recorded.fps);
     }
     if (!said && (together || *sensor.start_s != 0.0)) {
-      read.how += std::string(together ? "; recorded with the motion, its clock"
-                                       : "; by the motion's times, its clock") +
-                  " at frame 0 is " + Rounded(*sensor.start_s, 4) + " s" +
-                  (together ? "" : " (--sensor_start changes it)");
+      result->how += std::string(together ? "; recorded with the motion, its clock"
+                                          : "; by the motion's times, its clock") +
+                     " at frame 0 is " + Rounded(*sensor.start_s, 4) + " s" +
+                     (together ? "" : " (--sensor_start changes it)");
     }
     const Vector3<double>& rest = record.value().subtracted;
     if (rest.norm() > 0.0) {
       const double size = record.value().is_vector ? rest.norm() : rest.x();
-      read.how += "; " + Rounded(size, 3) +
-                  " N before the pull subtracted (zero: 0, "
-                  "in a list of sensors, keeps them)";
+      result->how += "; " + Rounded(size, 3) +
+                     " N before the pull subtracted (zero: 0, "
+                     "in a list of sensors, keeps them)";
     }
-    read.choices.push_back(sensor);
-    read.records.push_back(std::move(record.value()));
+    read.push_back({sensor, std::move(record.value())});
   }
   return read;
-}
-
-// The mean over a frame that a sensor's noise at rest makes, N.
-double IdleForce(const SensorRecord& record, double dt) {
-  const double step = (record.time_s.back() - record.time_s.front()) / (record.num_samples() - 1);
-  return kNoisePeaks * record.noise * std::sqrt(std::min(1.0, step / dt));
 }
 
 // The error of an estimated offset: that of noise, and half a frame, which its fit cannot tell.
@@ -372,14 +182,19 @@ double ClockError(const SensorOffset& offset, const PendulumRecording& recording
 
 // Offset of the sensors' clocks by the motion; zero unless it is asked for and the motion does not
 // contradict it.
-Result<SensorOffset> Offset(const SensorSetup& setup, const ReadSensors& read,
+Result<SensorOffset> Offset(const SensorSetup& setup, const std::vector<ReadSensorOf>& read,
                             const PendulumRecording& recording, int person, SensorPush* result) {
   if (!setup.estimate_offset) return SensorOffset();
   std::vector<TimedRecord> timed;
-  for (std::size_t i = 0; i < read.records.size(); ++i) {
-    timed.push_back(AsVectors(read.records[i], read.choices[i]));
+  for (const auto& [sensor, record] : read) {
+    // Vectors along the direction, as PushFromSensor makes them.
+    timed.push_back({record, sensor.start_s.value_or(0.0)});
+    if (record.is_vector) continue;
+    for (Eigen::Vector3d& force : timed.back().record.force) {
+      force = force.x() * sensor.direction.normalized();
+    }
   }
-  Result<SensorOffset> offset = EstimateSensorOffset(timed, recording, person, setup.max_offset_s);
+  Result<SensorOffset> offset = EstimateSensorOffset(timed, recording, person);
   if (!offset.ok()) return offset;
   const double gain = offset.value().gain;
   if (gain < 1.0 / kOddGain || gain > kOddGain) {
@@ -397,54 +212,6 @@ Result<SensorOffset> Offset(const SensorSetup& setup, const ReadSensors& read,
   return offset;
 }
 
-}  // namespace
-
-Result<SensorPush> PushFromSensors(const SensorSetup& setup, const Recording& recorded,
-                                   const PendulumRecording& recording, int person) {
-  if (person < 0 || person >= recording.num_people()) {
-    return Error{"recording " + recording.id + ": there is no person " + std::to_string(person)};
-  }
-  const Result<ReadSensors> read = ReadAll(setup, recorded, person);
-  if (!read.ok()) return read.error();
-  SensorPush result;
-  result.how = read.value().how;
-  result.warnings = read.value().warnings;
-  const Result<SensorOffset> offset = Offset(setup, read.value(), recording, person, &result);
-  if (!offset.ok()) return offset.error();
-  SensorPushOptions options;
-  options.person = person;
-  if (setup.estimate_offset) {
-    options.clock_error_s = ClockError(offset.value(), recording);
-  }
-  for (std::size_t i = 0; i < read.value().records.size(); ++i) {
-    const SensorChoice& sensor = read.value().choices[i];
-    const SensorRecord& record = read.value().records[i];
-    options.direction = sensor.direction;
-    options.height_fraction = sensor.height_fraction;
-    options.height_m = sensor.height_m ? sensor.height_m : record.height_m;
-    options.frame_zero_time_s = sensor.start_s.value_or(0.0) + offset.value().offset_s;
-    options.idle_force =
-        sensor.idle_force > 0.0 ? sensor.idle_force : IdleForce(record, recording.scene.dt);
-    if (!options.height_m && options.height_fraction == SensorChoice{}.height_fraction) {
-      result.how += "; contact at the hip's height (--height changes it)";
-    }
-    const Result<Push> push = PushFromSensor(record, recording, options);
-    if (!push.ok()) return push.error();
-    for (const std::string& doubt : {CutShort(record), ClippedText(record)}) {
-      if (!doubt.empty()) result.warnings.push_back(doubt);
-    }
-    if (record.height_m && *record.height_m < 0.1) {
-      result.warnings.push_back(sensor.file + ": " + sensor.column +
-                                " lies on the floor: it measures the ground reaction force of the "
-                                "person standing there, not a push");
-    }
-    AddPush(push.value(), &result.push);
-  }
-  return result;
-}
-
-namespace {
-
 using Eigen::VectorXd;
 
 constexpr double kAfterPush = 0.4;  // s of motion behind the push's end that take part
@@ -459,43 +226,35 @@ class Integrals {
     for (const Eigen::Vector3d& f : force.record.force) {
       force_.push_back(f.head<2>().dot(direction));
     }
-    once_.push_back(0.0);
-    twice_.push_back(0.0);
+    integrals_.emplace_back(0.0, 0.0);
     for (std::size_t i = 1; i < time_.size(); ++i) {
-      double once = 0.0, twice = 0.0;
-      Within(i - 1, time_[i] - time_[i - 1], &once, &twice);
-      once_.push_back(once);
-      twice_.push_back(twice);
+      integrals_.push_back(Within(i - 1, time_[i] - time_[i - 1]));
     }
   }
 
-  // Integrals at a time of the cameras plus the offset.
-  void At(double t, double* once, double* twice) const {
+  // (once, twice) at a time of the cameras plus the offset.
+  Eigen::Vector2d At(double t) const {
     t += zero_;
-    if (t <= time_.front()) {
-      *once = *twice = 0.0;
-      return;
-    }
-    if (t >= time_.back()) {
-      *once = once_.back();
-      *twice = twice_.back() + once_.back() * (t - time_.back());
-      return;
-    }
+    if (t <= time_.front()) return Eigen::Vector2d::Zero();
+    const Eigen::Vector2d& last = integrals_.back();
+    if (t >= time_.back()) return {last[0], last[1] + last[0] * (t - time_.back())};
     const std::size_t i = std::upper_bound(time_.begin(), time_.end(), t) - time_.begin() - 1;
-    Within(i, t - time_[i], once, twice);
+    return Within(i, t - time_[i]);
   }
 
  private:
   // h behind sample i, within its interval.
-  void Within(std::size_t i, double h, double* once, double* twice) const {
+  Eigen::Vector2d Within(std::size_t i, double h) const {
     const double slope = (force_[i + 1] - force_[i]) / (time_[i + 1] - time_[i]);
-    *once = once_[i] + h * (force_[i] + 0.5 * h * slope);
-    *twice = twice_[i] + h * (once_[i] + h * (0.5 * force_[i] + h * slope / 6.0));
+    const double once = integrals_[i][0], twice = integrals_[i][1];
+    return {once + h * (force_[i] + 0.5 * h * slope),
+            twice + h * (once + h * (0.5 * force_[i] + h * slope / 6.0))};
   }
 
   double zero_;
   const std::vector<double>& time_;
-  std::vector<double> force_, once_, twice_;
+  std::vector<double> force_;
+  std::vector<Eigen::Vector2d> integrals_;  // up to each sample
 };
 
 class OffsetFit {
@@ -504,7 +263,7 @@ class OffsetFit {
             const Eigen::Vector2d& direction, int frames)
       : dt_(recording.scene.dt), mass_(recording.scene.people[person].body.mass) {
     for (const TimedRecord& force : forces) integrals_.emplace_back(force, direction);
-    Eigen::MatrixXd regressors(frames, 4);
+    regressors_.resize(frames, 4);
     target_.resize(frames);
     weight_.resize(frames);
     double lean_once = 0.0, lean_twice = 0.0, way = 0.0, lean_before = 0.0, x_before = 0.0;
@@ -523,44 +282,37 @@ class OffsetFit {
       lean_before = lean;
       x_before = moved;
       weight_[t] = recording.Weight(person, t);
-      regressors.row(t) << 1.0, t * dt_, lean_twice, way;
+      regressors_.row(t) << 1.0, t * dt_, lean_twice, way;
       target_[t] = 0.9 * hip + 0.1 * x;
     }
-    pseudo_inverse_ = PseudoInverse(weight_.asDiagonal() * regressors);
-    regressors_ = regressors;
+    pseudo_inverse_ = PseudoInverse(weight_.asDiagonal() * regressors_);
   }
 
   // Residuals after the linear parameters; the derivative is by tau, with them following.
   VectorXd Residual(double tau, VectorXd* derivative = nullptr) const {
-    VectorXd way(target_.size()), velocity(target_.size());
-    ByTheForce(tau, &way, &velocity);
-    if (derivative != nullptr) *derivative = Projected(-velocity);
-    return Projected(target_ - way);
+    const Eigen::MatrixX2d moved = ByTheForce(tau);
+    if (derivative != nullptr) *derivative = Projected(-moved.col(0));
+    return Projected(target_ - moved.col(1));
   }
 
   // The multiple of the force that would leave least.
   double Gain(double tau) const {
-    VectorXd way(target_.size()), velocity(target_.size());
-    ByTheForce(tau, &way, &velocity);
-    const VectorXd along = Projected(way);
+    const VectorXd along = Projected(ByTheForce(tau).col(1));
     return along.dot(Projected(target_)) / along.squaredNorm();
   }
 
   double Count() const { return weight_.squaredNorm(); }
 
  private:
-  // Way and velocity that the force alone would have given the person.
-  void ByTheForce(double tau, VectorXd* way, VectorXd* velocity) const {
+  // Velocity and way that the force alone would have given the person, by frame.
+  Eigen::MatrixX2d ByTheForce(double tau) const {
+    Eigen::MatrixX2d moved(target_.size(), 2);
     for (int t = 0; t < target_.size(); ++t) {
-      double once = 0.0, twice = 0.0, sum_once = 0.0, sum_twice = 0.0;
-      for (const Integrals& integral : integrals_) {
-        integral.At(t * dt_ + tau, &once, &twice);
-        sum_once += once;
-        sum_twice += twice;
-      }
-      (*way)[t] = sum_twice / mass_;
-      (*velocity)[t] = sum_once / mass_;
+      Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+      for (const Integrals& integral : integrals_) sum += integral.At(t * dt_ + tau);
+      moved.row(t) = (sum / mass_).transpose();
     }
+    return moved;
   }
 
   VectorXd Projected(const VectorXd& value) const {
@@ -612,12 +364,189 @@ bool MovesAgainst(const std::vector<Vector3<double>>& hip, int frames,
 
 }  // namespace
 
+Result<PushWindow> DetectPushWindow(const PendulumRecording& recording,
+                                    const PushEstimationOptions& options, const PushWindow& given) {
+  if (given.start >= 0 && given.end >= 0) return given;
+  if (MaybeError wrong = CheckEstimationOptions(recording, options)) return *std::move(wrong);
+  const std::vector<SmoothedSample> hip = SmoothedHip(recording, options.person);
+  const int frames = recording.num_frames();
+  const auto speed = [&](int t) { return hip[t].rate.norm(); };
+
+  int onset = 0, above = 0;
+  for (; onset < frames && above < kSustained; ++onset) {
+    above = speed(onset) > kOnsetSpeed ? above + 1 : 0;
+  }
+  if (above < kSustained) {
+    return Error{"recording " + recording.id + ": the hip of person " +
+                 std::to_string(options.person) + " never moves faster than " +
+                 std::to_string(kOnsetSpeed) +
+                 " m/s for three frames, so no push is found; name the window or lower the speed"};
+  }
+  onset -= kSustained;
+  PushWindow window;
+  window.start = onset;
+  while (window.start > 0 && speed(window.start - 1) < speed(window.start)) --window.start;
+
+  // Along the way the person goes: mean direction of the first 0.15 s after the onset.
+  const int later =
+      std::min(frames - 1, onset + static_cast<int>(kDetectionSpan / recording.scene.dt));
+  const Eigen::Vector4d way = (hip[later].value - hip[window.start].value).normalized();
+  double peak = 0.0;
+  for (window.end = window.start + 1; window.end < frames - 1; ++window.end) {
+    const double acceleration = hip[window.end].acceleration.dot(way);
+    peak = std::max(peak, acceleration);
+    if (window.end > onset && acceleration <= kEndFraction * peak) break;
+  }
+  if (given.start >= 0) window.start = given.start;
+  if (given.end >= 0) window.end = given.end;
+  return window;
+}
+
+MaybeError ParseInitialVelocity(const std::string& what, const std::string& name,
+                                std::optional<InitialVelocity>* value) {
+  if (name == "auto") return std::nullopt;
+  *value = FromName<InitialVelocity>(name);
+  if (*value && **value != InitialVelocity::kFree) return std::nullopt;
+  return Error{what + " is '" + name + "'; it must be zero, estimated or auto"};
+}
+
+Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const PushWindow& window,
+                                   const PushEstimationOptions& options) {
+  if (MaybeError wrong = CheckEstimationOptions(recording, options)) return *std::move(wrong);
+  const int frames = recording.num_frames();
+  if (window.start < 0 || window.end <= window.start || window.end >= frames) {
+    return Error{"recording " + recording.id + ": a push from frame " +
+                 std::to_string(window.start) + " to " + std::to_string(window.end) +
+                 " is not within its frames 0 to " + std::to_string(frames - 1)};
+  }
+  const double dt = recording.scene.dt;
+  std::vector<PendulumState<double>> states = recording.states[options.person];
+  if (options.smoothing_frames > 0) {
+    std::vector<Eigen::Vector4d> q;
+    for (const PendulumState<double>& state : states) q.push_back(state.q);
+    const std::vector<SmoothedSample> smoothed = SavitzkyGolay(q, options.smoothing_frames, dt);
+    for (int t = 0; t < frames; ++t) {
+      states[t].q = smoothed[t].value;
+      // The smoother's rate is not used: qd must be what an Euler step makes of q.
+      if (t > 0) states[t].qd = (states[t].q - states[t - 1].q) / dt;
+    }
+  }
+  const auto at_rest = [&] {
+    if (options.initial_velocity) return *options.initial_velocity == InitialVelocity::kZero;
+    return SmoothedHip(recording, options.person)[window.start].rate.norm() <= kOnsetSpeed;
+  };
+  if (window.start > 0 && at_rest()) states[window.start].qd.setZero();
+
+  EstimatedPush result;
+  result.start_speed = states[window.start].qd.head<2>().norm();
+  result.push.person = options.person;
+  result.push.start_frame = window.start;
+  const Body& body = recording.scene.people[options.person].body;
+  for (int t = window.start; t <= window.end; ++t) {
+    const PendulumState<double>& state = states[t];
+    const std::string_view outside = OutsideDomain(body, state);
+    if (!outside.empty()) {
+      return Error{"recording " + recording.id + ": " + std::string(outside) + " at frame " +
+                   std::to_string(t) + " is outside the model's domain of +-1.4 rad"};
+    }
+    result.motion.push_back(state);
+    if (t == window.end) break;
+    result.push.force.push_back(
+        InverseDynamics<double>(body, state, (states[t + 1].qd - state.qd) / dt));
+  }
+  return result;
+}
+
+Result<Push> PushFromSensor(const SensorRecord& record, const SensorChoice& sensor,
+                            const PendulumRecording& recording, int person, double clock_error_s) {
+  if (MaybeError error = CheckPerson(recording, person)) return *error;
+  const double zero = sensor.start_s.value_or(0.0), length = sensor.direction.norm();
+  if (!record.is_vector && !(std::isfinite(length) && length > 0.0)) {
+    return Error{"the push direction must be a finite vector other than zero"};
+  }
+  if (!std::isfinite(sensor.height_fraction + sensor.height_m.value_or(0.0) + zero)) {
+    return Error{"contact height and the time of frame 0 must be finite numbers"};
+  }
+  if (record.num_samples() < 2) return Error{"the record has no force samples", record.file};
+  // Row by row, then without the idle rows at both ends.
+  const double dt = recording.scene.dt;
+  std::vector<Vector3<double>> rows;
+  for (int t = 0; t + 1 < recording.num_frames(); ++t) {
+    rows.push_back(Impulse(record, zero + (t - 0.5) * dt, zero + (t + 0.5) * dt) / dt);
+  }
+  double largest = 0.0;
+  for (const Vector3<double>& row : rows) largest = std::max(largest, row.norm());
+  const bool by_noise = sensor.idle_force < kNoise * largest;
+  const double resting = by_noise ? kNoise * largest : sensor.idle_force;
+  const auto idle = [resting](const Vector3<double>& row) { return !(row.norm() > resting); };
+  auto first = std::find_if_not(rows.begin(), rows.end(), idle);
+  auto last = std::find_if_not(rows.rbegin(), rows.rend(), idle).base();
+  // A push may begin or end within a row, of which little is left.
+  const auto some = [](const Vector3<double>& row) { return row.norm() > 0.0; };
+  if (by_noise && first != rows.begin() && some(first[-1])) --first;
+  if (by_noise && last != rows.end() && some(*last)) ++last;
+  const bool empty = first == rows.end();
+  if (MaybeError error = CheckPushInside(record, sensor, recording, clock_error_s, empty)) {
+    return *error;
+  }
+  Push push;
+  push.person = person;
+  push.start_frame = static_cast<int>(first - rows.begin());
+  push.file = record.file;
+  const Body& body = recording.scene.people[person].body;
+  const std::vector<PendulumState<double>>& states = recording.states[person];
+  const double fraction = sensor.height_m
+                              ? HeightFraction(body, states[push.start_frame].q, *sensor.height_m)
+                              : sensor.height_fraction;
+  for (auto row = first; row != last; ++row) {
+    const Vector4<double>& q = states[row - rows.begin()].q;
+    const Vector3<double> force =
+        record.is_vector ? *row : Vector3<double>(row->x() / length * sensor.direction);
+    push.force.push_back(GeneralizedForce(body, q, force, fraction));
+  }
+  return push;
+}
+
+Result<SensorPush> PushFromSensors(const SensorSetup& setup, const Recording& recorded,
+                                   const PendulumRecording& recording, int person) {
+  if (MaybeError error = CheckPerson(recording, person)) return *error;
+  SensorPush result;
+  Result<std::vector<ReadSensorOf>> read = ReadAll(setup, recorded, person, &result);
+  if (!read.ok()) return read.error();
+  const Result<SensorOffset> offset = Offset(setup, read.value(), recording, person, &result);
+  if (!offset.ok()) return offset.error();
+  const double clock_error_s = setup.estimate_offset ? ClockError(offset.value(), recording) : 0.0;
+  for (auto& [sensor, record] : read.value()) {
+    if (!sensor.height_m) sensor.height_m = record.height_m;
+    sensor.start_s = sensor.start_s.value_or(0.0) + offset.value().offset_s;
+    if (!(sensor.idle_force > 0.0)) {  // the mean over a frame that noise at rest makes
+      const double span = record.time_s.back() - record.time_s.front();
+      const double step = span / (record.num_samples() - 1);
+      sensor.idle_force =
+          kNoisePeaks * record.noise * std::sqrt(std::min(1.0, step / recording.scene.dt));
+    }
+    if (!sensor.height_m && sensor.height_fraction == SensorChoice{}.height_fraction) {
+      result.how += "; contact at the hip's height (--height changes it)";
+    }
+    const Result<Push> push = PushFromSensor(record, sensor, recording, person, clock_error_s);
+    if (!push.ok()) return push.error();
+    for (const std::string& doubt : {CutShort(record), ClippedText(record)}) {
+      if (!doubt.empty()) result.warnings.push_back(doubt);
+    }
+    if (record.height_m && *record.height_m < 0.1) {
+      result.warnings.push_back(sensor.file + ": " + sensor.column +
+                                " lies on the floor: it measures the ground reaction force of the "
+                                "person standing there, not a push");
+    }
+    AddPush(push.value(), &result.push);
+  }
+  return result;
+}
+
 Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedRecord>& forces,
                                           const PendulumRecording& recording, int person,
                                           double max_offset_s) {
-  if (person < 0 || person >= recording.num_people()) {
-    return Error{"recording " + recording.id + ": there is no person " + std::to_string(person)};
-  }
+  if (MaybeError error = CheckPerson(recording, person)) return *error;
   if (!(max_offset_s > 0.0 && max_offset_s <= 60.0)) {
     return Error{"the largest offset must be above 0 and at most 60 s"};
   }
@@ -669,7 +598,6 @@ Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedRecord>& forces
   const double after = residual.head(frames - 1).dot(residual.tail(frames - 1));
   const double r = std::clamp(after / std::max(residual.squaredNorm(), 1e-300), 0.0, 0.99);
   result.standard_error_s = std::sqrt(variance / slope.squaredNorm() * (1.0 + r) / (1.0 - r));
-  result.rms_m = std::sqrt(residual.squaredNorm() / n);
   result.gain = fit.Gain(result.offset_s);
   if (!(result.standard_error_s <= 0.25 * max_offset_s)) {
     return Error{"recording " + recording.id +

@@ -39,12 +39,8 @@ struct PushEstimationOptions {
   int smoothing_frames = 0;
   // Speed of the person where the window begins: none (zero), or the backward difference
   // (estimated), of which noise makes a first row as large as any. Unset: estimated where the
-  // smoothed hip is faster than onset_speed. At frame 0 it is the recording's own start velocity.
+  // smoothed hip is faster than 0.1 m/s. At frame 0 it is the recording's own start velocity.
   std::optional<InitialVelocity> initial_velocity;
-  // Detection: the hip's speed that counts as moving, and its acceleration, as a fraction of the
-  // peak, below which the push is over.
-  double onset_speed = 0.1;  // m/s
-  double end_fraction = 0.05;
 };
 
 struct EstimatedPush {
@@ -52,19 +48,15 @@ struct EstimatedPush {
   PushKind kind = PushKind::kNet;
   // The motion that the rows reproduce, frames start .. end: the recording's, smoothed if asked.
   std::vector<PendulumState<double>> motion;
-  Vector4<double> impulse = Vector4<double>::Zero();  // N s, N s, N m s, N m s
-  double peak_force = 0.0;                            // N, horizontal
-  double start_speed = 0.0;                           // m/s, of the cart, at the window's start
+  double start_speed = 0.0;  // m/s, of the cart, at the window's start
 };
 
-// The window from the frame where the hip sets off (slowest before it first moves at onset_speed)
-// to the end of its acceleration along its way, judged on the hip smoothed over 0.15 s.
+// The window from the frame where the hip sets off (slowest before it first moves at 0.1 m/s)
+// to the end of its acceleration along its way, judged on the hip smoothed over 0.15 s. given: ends
+// of at least 0 are taken as they are.
 Result<PushWindow> DetectPushWindow(const PendulumRecording& recording,
-                                    const PushEstimationOptions& options);
-
-// `given` where both of its ends are at least 0; a negative one is detected.
-Result<PushWindow> PushWindowFrom(const PushWindow& given, const PendulumRecording& recording,
-                                  const PushEstimationOptions& options);
+                                    const PushEstimationOptions& options,
+                                    const PushWindow& given = {-1, -1});
 
 // Reads an initial_velocity by name: zero, estimated or auto (unset). what: --initial_velocity.
 MaybeError ParseInitialVelocity(const std::string& what, const std::string& name,
@@ -84,34 +76,23 @@ Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const Pus
 // then of second order. Rejected: the mean over [t dt, (t + 1) dt), which pushes half a frame
 // early; sampling the force at the frames, which loses part of a short push.
 
-struct SensorPushOptions {
-  int person = 0;
-  // Direction of a force given along the sensor's axis: where it pushes the person, in the
-  // project's axes; of any length. A record with fx, fy, fz has its own.
-  Vector3<double> direction = {1.0, 0.0, 0.0};
-  // Height of the push: fraction of the rod from cart to hip (above 1: above the hip), or, where
-  // given, metres above the recording's zero height, judged at the push's first frame.
-  double height_fraction = 1.0;
-  std::optional<double> height_m;
-  double frame_zero_time_s = 0.0;  // on the sensor's clock
-  double clock_error_s = 0.0;      // of that: so far outside the recording a force is not lost
-  // Forces up to this size (N) before and after the push are the sensor's idling: rows whose mean
-  // is no greater, or (but one row) below a hundredth of the largest row's, are cut off at both
-  // ends: a push that goes on in noise would have no end.
-  double idle_force = 0.0;
-};
-
+// sensor: its direction (of any length) counts where the record is no vector; heights are judged at
+// the push's first frame, in metres where height_m is given. Forces up to idle_force before and
+// after the push are the sensor's idling: rows whose mean is no greater, or (but one row) below a
+// hundredth of the largest row's, are cut off at both ends: a push that goes on in noise would have
+// no end. clock_error_s: so far outside the recording a force is not lost.
+//
 // The rows' kind is PushKind::kExternal. Errors: no such person, no direction, a contact height
 // that is not finite, no force at all, or more than 1 % of the impulse outside the recording.
-Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording& recording,
-                            const SensorPushOptions& options);
+Result<Push> PushFromSensor(const SensorRecord& record, const SensorChoice& sensor,
+                            const PendulumRecording& recording, int person,
+                            double clock_error_s = 0.0);
 
 // The push of a person from one force sensor, or from several that push together.
 
 struct SensorSetup {
-  std::vector<SensorChoice> sensors;  // which push together
-  bool estimate_offset = false;       // of their clocks from the motion's
-  double max_offset_s = 0.5;          // how far estimate_offset looks on either side
+  std::vector<SensorChoice> sensors;  // that push together
+  bool estimate_offset = false;       // the offset of their clocks from the motion's
 };
 
 struct SensorPush {
@@ -150,8 +131,7 @@ struct TimedRecord {
 struct SensorOffset {
   double offset_s = 0.0;  // to be added to every frame_zero_time_s
   double standard_error_s = 0.0;
-  double rms_m = 0.0;  // of what the fit leaves
-  double gain = 1.0;   // the multiple of the force that would fit the motion best
+  double gain = 1.0;  // the multiple of the force that would fit the motion best
 };
 
 // max_offset_s: how far to look on either side. Errors: no such person, no force, too short a
@@ -159,6 +139,6 @@ struct SensorOffset {
 // standard error of a quarter of the range) or goes against the force.
 Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedRecord>& forces,
                                           const PendulumRecording& recording, int person,
-                                          double max_offset_s);
+                                          double max_offset_s = 0.5);
 
 }  // namespace pushid

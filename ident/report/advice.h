@@ -4,8 +4,8 @@
 //   -> pushid-fit --recordings=M/manifest.json --preset=ldp --self_force=linear
 #pragma once
 
+#include <nlohmann/ordered_map.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "ident/model/fitted_model.h"
@@ -23,7 +23,10 @@ class FitCommand {
   static FitCommand Check(const Provenance& provenance);
 
   // Replaces the value that the fit had.
-  FitCommand& Set(const std::string& flag, const std::string& value);
+  FitCommand& Set(const std::string& flag, const std::string& value) {
+    flags_[flag] = value;
+    return *this;
+  }
   // One more item of a comma-separated list: the flag given twice would lose the first list. What
   // is fixed is neither free nor pooled any more.
   FitCommand& Append(const std::string& flag, const std::string& item);
@@ -35,16 +38,15 @@ class FitCommand {
 
  private:
   explicit FitCommand(std::string program) : program_(std::move(program)) {}
-  std::string* Find(const std::string& flag);
   // Takes a parameter out of a list; without any left the list says none, or is gone.
   void TakeOut(const std::string& flag, const std::string& name, const char* without);
   std::string program_;
-  std::vector<std::pair<std::string, std::string>> flags_;  // in the order they are printed
+  nlohmann::ordered_map<std::string, std::string> flags_;  // in the order they are printed
 };
 
 // An advised command as it is printed: with the model's file instead of FILE, where one keeps it.
 std::string CommandFor(const Provenance& provenance, std::string command);
-// Whether a command is one of pushid-check, which needs the model's file.
+// True for commands of pushid-check, which need the model's file.
 bool NamesModel(const std::string& command);
 
 // Rules from findings to next steps in plain words, the most pressing first: a pure function of a

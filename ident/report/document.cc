@@ -82,81 +82,6 @@ std::string SectionText(const ReportSection& section) {
   return section.title + "\n" + std::string(section.title.size(), '=') + "\n" + text + "\n";
 }
 
-// A comma or a quote in a name must not shift the columns.
-std::string Field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-// Names hold ids of recordings and parameters.
-std::string PlainName(const std::string& name) {
-  std::string file = name;
-  for (char& c : file) {
-    const bool plain = std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_';
-    if (!plain) c = '_';
-  }
-  return file;
-}
-
-}  // namespace
-
-std::string CsvOf(const TextTable& table) {
-  std::string csv;
-  for (const auto& row : table.rows()) {
-    for (size_t i = 0; i < row.size(); ++i) csv += (i > 0 ? "," : "") + Field(row[i]);
-    csv += "\n";
-  }
-  return csv;
-}
-
-std::string ToText(const Report& report) {
-  std::string text = TextLines(report.title) + TextLines(report.subtitle) + "\n";
-  for (const ReportSection& section : report.sections) {
-    if (section.id != "provenance") text += SectionText(section);
-  }
-  return text;
-}
-
-std::vector<const ReportFigure*> FiguresOf(const Report& report) {
-  std::vector<const ReportFigure*> figures;
-  for (const ReportSection& section : report.sections) {
-    for (const ReportFigure& figure : section.figures) figures.push_back(&figure);
-    for (const ReportFold& fold : section.folds) {
-      for (const ReportFigure& figure : fold.figures) figures.push_back(&figure);
-    }
-  }
-  return figures;
-}
-
-std::vector<NamedText> FigureFiles(const Report& report) {
-  constexpr double kWidth = 1000.0;  // pixels
-  std::vector<NamedText> files;
-  std::string captions = "# " + report.title + "\n";
-  const auto caption = [&captions](const std::string& name, const std::string& text) {
-    captions += "\n**" + name + "** " + text + "\n";
-  };
-  for (const ReportFigure* figure : FiguresOf(report)) {
-    const std::string name = PlainName(figure->name);
-    files.emplace_back(name + ".svg", DrawFigure(figure->figure, kWidth, name).ToString());
-    files.emplace_back(name + ".csv", CsvOf(figure->numbers));
-    caption(name, figure->caption);
-  }
-  for (const ReportSection& section : report.sections) {
-    int number = 0;
-    for (const ReportTable& table : section.tables) {
-      const std::string name = "table_" + section.id + "_" + std::to_string(++number);
-      files.emplace_back(name + ".csv", CsvOf(table.table));
-      caption(name, section.title + (table.caption.empty() ? "" : ": " + table.caption) + ".");
-    }
-  }
-  files.emplace_back(kCaptionsFile, captions);
-  return files;
-}
-
-namespace {
-
 std::string Element(const std::string& name, const std::string& text) {
   return "<" + name + ">" + EscapeXml(text) + "</" + name + ">\n";
 }
@@ -200,27 +125,13 @@ std::string FigureHtml(const ReportFigure& figure) {
   return html + "</figure>\n";
 }
 
-bool IsEmpty(const ReportSection& s) {
-  return s.alarm.empty() && s.paragraphs.empty() && s.advice.empty() && s.tables.empty() &&
-         s.figures.empty() && s.folds.empty() && s.widget.empty();
-}
-
-bool HasWidget(const ReportSection& s) {
-  return !s.widget.empty() || std::any_of(s.folds.begin(), s.folds.end(),
-                                          [](const auto& fold) { return !fold.widget.empty(); });
-}
-
 // Lines that belong together stay one paragraph.
 std::string Paragraph(std::string text, const char* opening = "<p>") {
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
   if (text.empty()) return "";
-  std::string html = opening;
-  size_t from = 0;
-  for (size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', from)) {
-    html += EscapeXml(text.substr(from, end - from)) + "<br>";
-    from = end + 1;
-  }
-  return html + EscapeXml(text.substr(from)) + "</p>\n";
+  std::vector<std::string> lines = SplitList(text, '\n');
+  for (std::string& line : lines) line = EscapeXml(line);
+  return opening + Joined(lines, "<br>") + "</p>\n";
 }
 
 std::string SectionHtml(const ReportSection& section) {
@@ -248,15 +159,82 @@ std::string SectionHtml(const ReportSection& section) {
 
 }  // namespace
 
+std::string CsvOf(const TextTable& table) {
+  std::string csv;
+  for (const auto& row : table.rows()) {
+    for (size_t i = 0; i < row.size(); ++i) {
+      // A comma or a quote in a name must not shift the columns.
+      const bool quoted = row[i].find_first_of(",\"\n") != std::string::npos;
+      csv += std::string(i > 0 ? "," : "") + (quoted ? "\"" : "");
+      for (const char c : row[i]) csv += c == '"' ? std::string("\"\"") : std::string(1, c);
+      if (quoted) csv += '"';
+    }
+    csv += "\n";
+  }
+  return csv;
+}
+
+std::string ToText(const Report& report) {
+  std::string text = TextLines(report.title) + TextLines(report.subtitle) + "\n";
+  for (const ReportSection& section : report.sections) {
+    if (section.id != "provenance") text += SectionText(section);
+  }
+  return text;
+}
+
+std::vector<const ReportFigure*> FiguresOf(const Report& report) {
+  std::vector<const ReportFigure*> figures;
+  for (const ReportSection& section : report.sections) {
+    for (const ReportFigure& figure : section.figures) figures.push_back(&figure);
+    for (const ReportFold& fold : section.folds) {
+      for (const ReportFigure& figure : fold.figures) figures.push_back(&figure);
+    }
+  }
+  return figures;
+}
+
+std::vector<NamedText> FigureFiles(const Report& report) {
+  constexpr double kWidth = 1000.0;  // pixels
+  std::vector<NamedText> files;
+  std::string captions = "# " + report.title + "\n";
+  const auto caption = [&captions](const std::string& name, const std::string& text) {
+    captions += "\n**" + name + "** " + text + "\n";
+  };
+  for (const ReportFigure* figure : FiguresOf(report)) {
+    std::string name = figure->name;  // holds ids of recordings and parameters
+    for (char& c : name) {
+      if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
+    }
+    files.emplace_back(name + ".svg", DrawFigure(figure->figure, kWidth, name).ToString());
+    files.emplace_back(name + ".csv", CsvOf(figure->numbers));
+    caption(name, figure->caption);
+  }
+  for (const ReportSection& section : report.sections) {
+    int number = 0;
+    for (const ReportTable& table : section.tables) {
+      const std::string name = "table_" + section.id + "_" + std::to_string(++number);
+      files.emplace_back(name + ".csv", CsvOf(table.table));
+      caption(name, section.title + (table.caption.empty() ? "" : ": " + table.caption) + ".");
+    }
+  }
+  files.emplace_back(kCaptionsFile, captions);
+  return files;
+}
+
 // The links stand behind the first section, which is what most readers want.
 std::string ToPage(const Report& report) {
   std::string nav, lead, body;
   bool scripted = false;
   for (const ReportSection& section : report.sections) {
-    if (IsEmpty(section)) continue;
+    bool widget = !section.widget.empty();
+    for (const ReportFold& fold : section.folds) widget = widget || !fold.widget.empty();
+    if (section.alarm.empty() && section.paragraphs.empty() && section.advice.empty() &&
+        section.tables.empty() && section.figures.empty() && section.folds.empty() && !widget) {
+      continue;
+    }
     nav += "<li><a href=\"#" + section.id + "\">" + EscapeXml(section.title) + "</a></li>\n";
     (lead.empty() ? lead : body) += SectionHtml(section);
-    scripted = scripted || HasWidget(section);
+    scripted = scripted || widget;
   }
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"

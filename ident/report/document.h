@@ -13,13 +13,13 @@
 namespace pushid {
 
 struct ReportTable {
-  std::string caption;  // where there is one the page folds the table under it
+  std::string caption;  // the page folds the table under it; empty: no fold
   TextTable table;
 };
 
 struct ReportFigure {
-  std::string name;     // of its files: letters, digits, _ and -
-  std::string caption;  // what to see in it
+  std::string name;     // of its files
+  std::string caption;  // says what to see in it
   Figure figure;
   TextTable numbers;  // behind it, at full precision, units in the header
 };
@@ -28,7 +28,7 @@ struct ReportFigure {
 struct ReportFold {
   std::string title;
   std::vector<ReportFigure> figures;
-  std::string widget = {};  // as that of a section
+  std::string widget = {};  // HTML for a page, as in a section
 };
 
 struct ReportSection {

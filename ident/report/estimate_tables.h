@@ -19,36 +19,11 @@ std::string IntervalText(double value, double lower, double upper, int digits = 
 // Values of the free parameters and the intervals that decide; of many, those first that the
 // recordings tell something of.
 TextTable ShortTable(const FitResult& result);
-TextTable EstimateTable(const FitResult& result);
-// The meaning of the table's columns of shares and shifts.
-std::string SharesNote();
-// How errors were estimated, and about whom they are.
-std::string ErrorsText(const FitResult& result);
-// What the feet of the model do, and why.
-std::string FeetOfFit(const FitResult& result);
-
-// c_x, c_y and gains per mass.
-TextTable DerivedTable(const FitResult& result);
-// Beside the interval that decides: that of the data alone, and that of these people alone.
-TextTable PartsTable(const FitResult& result);
-// "Measure better ...: a_x becomes identified where the height of the pushes is known to 0.01 m".
-// Empty: nothing that could be stated better would do.
-std::string SharperText(const FitResult& result);
-// The convention that separates mu from Kp, the quoted person, and which gains are tied.
-std::string ConventionText(const FitResult& result);
 // "Ankle stiffness 1.6 times m g l (1 is just enough to hold a pendulum upright), ..."
 std::string GainsText(const FitResult& result);
 // Why the fitted person does not come to rest; empty of one who does.
 std::string BalanceText(const FitResult& result);
-// Pairs of parameters that the data separate poorly.
-std::string CorrelationText(const FitResult& result);
-
-// Values of each unit that parameters are pooled by.
-TextTable PooledTable(const FitResult& result);
-// The shared values, and how far units differ from them.
-TextTable SpreadTable(const FitResult& result);
-
-// What people do after a push, in words and settling simulation by settling simulation.
+// The behaviour after a push, in words and settling simulation by settling simulation.
 std::string BehaviourText(const FitResult& result);
 TextTable BehaviourTable(const FitResult& result);
 

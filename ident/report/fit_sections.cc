@@ -17,47 +17,22 @@
 #include "ident/uncertainty/covariance.h"
 
 namespace pushid {
-namespace {
-
-std::string Next(const FittedModel& model) {
-  if (model.advice.empty()) return "What to do next: predict a push that was not fitted.";
-  return "What to do next: " + model.advice.front().sentence;
-}
-
-// Names, units and meanings of the free parameters.
-TextTable Legend(const FitResult& result) {
-  TextTable table({"name", "unit", "meaning"});
-  for (const Estimate& e : result.estimates) {
-    const ParameterSpec* spec = result.options.table.Find(e.name);
-    if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
-    table.Add({e.name, e.unit == "1" ? "-" : e.unit, spec->meaning});
-  }
-  return table;
-}
-
-// What parameters are pooled by, if any.
-std::string PooledBy(const FitOptions& options) {
-  if (!AnyPooled(options.table)) return "";
-  const bool may_lack = options.pool_by != kSubjectUnit && options.pool_by != kSettingLabel;
-  return options.pool_by + (may_lack ? " (without one by setting)" : "");
-}
-
-double MeanExplained(const FitResult& result) {
-  double sum = 0.0;
-  for (const RecordingDiagnostics& r : result.diagnostics.recordings) sum += r.explained;
-  return sum / static_cast<double>(std::max<size_t>(1, result.diagnostics.recordings.size()));
-}
-
-}  // namespace
 
 ReportSection ShortSection(const FittedModel& model, const std::string& more) {
   ReportSection section{"short", "In short"};
   section.Say(GainsText(model.fit));
   section.Say(BalanceText(model.fit));
   section.Say(more);
-  section.Say(Next(model));
+  section.Say("What to do next: " + (model.advice.empty() ? "predict a push that was not fitted."
+                                                          : model.advice.front().sentence));
   section.Show("", ShortTable(model.fit));
-  section.Show("what the names mean", Legend(model.fit));
+  TextTable legend({"name", "unit", "meaning"});
+  for (const Estimate& e : model.fit.estimates) {
+    const ParameterSpec* spec = model.fit.options.table.Find(e.name);
+    if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
+    legend.Add({e.name, e.unit == "1" ? "-" : e.unit, spec->meaning});
+  }
+  section.Show("what the names mean", legend);
   return section;
 }
 
@@ -66,14 +41,17 @@ ReportSection SummarySection(const FittedModel& model) {
   section.Say(model.fit.converged ? "The solve converged." : "The solve did NOT converge.");
   const FitOptions& o = model.fit.options;
   TextTable facts({"what", "value"});
-  const std::string by = PooledBy(o);
-  facts.Add({"recordings", std::to_string(model.fit.recordings.size()) + " (" +
-                               model.provenance.setting +
-                               (by.empty() ? ")" : "), pooled by " + by)});
+  const bool may_lack = o.pool_by != kSubjectUnit && o.pool_by != kSettingLabel;
+  facts.Add({"recordings",
+             std::to_string(model.fit.recordings.size()) + " (" + model.provenance.setting + ")" +
+                 (AnyPooled(o.table)
+                      ? ", pooled by " + o.pool_by + (may_lack ? " (without one by setting)" : "")
+                      : "")});
   facts.Add({"preset", o.preset});
   facts.Add({"posture", NameOf(o.model.posture)});
   facts.Add({"push", NameOf(o.model.push) + ", tail " + NameOf(o.model.push_tail)});
-  facts.Add({"feet", FeetOfFit(model.fit)});
+  facts.Add({"feet", model.fit.feet ? FeetText(*model.fit.feet, o.model.stance)
+                                    : "stance " + NameOf(o.model.stance)});
   facts.Add({"self force", SelfForceText(o.self_force, o.model.learned.get())});
   if (RodMoves(o.model)) facts.Add({"rod", RodName(o.model.learned->rod)});
   facts.Add({"interaction", InteractionText(o.model)});
@@ -82,9 +60,12 @@ ReportSection SummarySection(const FittedModel& model) {
     facts.Add(
         {"cost", Rounded(model.fit.cost, 6) + " after " + CountText(iterations, "iteration")});
   }
-  if (!model.fit.diagnostics.recordings.empty()) {
+  const std::vector<RecordingDiagnostics>& recordings = model.fit.diagnostics.recordings;
+  double explained = 0.0;
+  for (const RecordingDiagnostics& r : recordings) explained += r.explained;
+  if (!recordings.empty()) {
     facts.Add({"hip motion explained, mean over recordings",
-               Rounded(MeanExplained(model.fit), 3) + " %"});
+               Rounded(explained / static_cast<double>(recordings.size()), 3) + " %"});
   }
   section.Show("", facts);
   if (const std::string network = NetworkText(model.fit); !network.empty()) {
@@ -190,7 +171,7 @@ Chart ExplainedChart(const std::vector<const RecordingDiagnostics*>& recordings)
     chart.y_categories.push_back(recordings[i]->id);
     chart.y_notes.push_back(Rounded(value, 3) + (value < worst ? " <<" : ""));
     chart.bars.push_back({static_cast<double>(i), 0.0, std::max(value, worst),
-                          value < 0.0 ? "fill:#d55e00" : "fill:#3b82f6", ""});
+                          value < 0.0 ? "fill:#d55e00" : "fill:#3b82f6"});
   }
   return chart;
 }
@@ -202,7 +183,7 @@ struct OutlierRun {
   double worst = 0.0, weight = 1.0;
 };
 
-std::vector<OutlierRun> RunsOf(const Diagnostics& d) {
+TextTable OutlierTable(const Diagnostics& d) {
   std::vector<OutlierRun> runs;
   for (const RecordingDiagnostics& r : d.recordings) {
     std::vector<Outlier> outliers = r.outliers;
@@ -221,41 +202,13 @@ std::vector<OutlierRun> RunsOf(const Diagnostics& d) {
   }
   std::stable_sort(runs.begin(), runs.end(),
                    [](const OutlierRun& a, const OutlierRun& b) { return a.weight < b.weight; });
-  return runs;
-}
-
-TextTable OutlierTable(const Diagnostics& d) {
+  if (runs.size() > kMostOutliers) runs.resize(kMostOutliers);
   TextTable table({"recording", ">person", "frames", ">worst error, sigmas", ">least weight kept"});
-  const std::vector<OutlierRun> runs = RunsOf(d);
-  for (size_t i = 0; i < std::min(kMostOutliers, runs.size()); ++i) {
-    const OutlierRun& run = runs[i];
+  for (const OutlierRun& run : runs) {
     table.Add({run.recording, run.person, std::to_string(run.from) + " - " + std::to_string(run.to),
                Rounded(run.worst, 3), Rounded(run.weight, 2)});
   }
   return table;
-}
-
-Chart Correlogram(const std::string& title, const std::vector<double>& values,
-                  const std::vector<double>& errors, int first_lag, double band) {
-  Chart chart{title, "lag, frames"};
-  chart.Shrink();
-  ChartBand spread{{}, {}, kNarrowBandLook},
-      white{{}, {}, "stroke:none;fill:#e69f00;fill-opacity:.2"};
-  ChartLine line{{}, kPredictedLook, false};
-  for (size_t k = 0; k < values.size(); ++k) {
-    const double lag = first_lag + static_cast<double>(k);
-    line.points.emplace_back(lag, values[k]);
-    const double error = k < errors.size() ? 2.0 * errors[k] : 0.0;
-    spread.lower.emplace_back(lag, values[k] - error);
-    spread.upper.emplace_back(lag, values[k] + error);
-    white.lower.emplace_back(lag, -band);
-    white.upper.emplace_back(lag, band);
-  }
-  chart.bands = {white, spread};
-  chart.lines = {line};
-  chart.y_from = -1.0;
-  chart.y_to = 1.0;
-  return chart;
 }
 
 }  // namespace
@@ -337,19 +290,32 @@ ReportSection ResidualSection(const FittedModel& model) {
   TextTable numbers({"channel", "kind", "lag", "correlation", "standard_error", "white_band"});
   TextTable tests =
       TextTable::OfNumbers({"channel", "lag-1 correlation", "white +-", "Ljung-Box", "p"});
+  const auto add = [&](const Whiteness& w, const char* kind, const std::string& title,
+                       const std::vector<double>& values, const std::vector<double>& errors,
+                       int first_lag) {
+    Chart& chart = figure.panels.emplace_back(Chart{title, "lag, frames"});
+    chart.Shrink();
+    ChartBand spread{{}, {}, kNarrowBandLook},
+        white{{}, {}, "stroke:none;fill:#e69f00;fill-opacity:.2"};
+    ChartLine line{{}, kPredictedLook};
+    for (size_t k = 0; k < values.size(); ++k) {
+      const int lag = first_lag + static_cast<int>(k);
+      const double error = k < errors.size() ? errors[k] : 0.0;
+      line.points.emplace_back(lag, values[k]);
+      spread.lower.emplace_back(lag, values[k] - 2.0 * error);
+      spread.upper.emplace_back(lag, values[k] + 2.0 * error);
+      white.lower.emplace_back(lag, -w.mean_band);
+      white.upper.emplace_back(lag, w.mean_band);
+      numbers.Add({w.channel, kind, lag, values[k], error, w.mean_band});
+    }
+    chart.bands = {white, spread};
+    chart.lines = {line};
+    chart.y_from = -1.0;
+    chart.y_to = 1.0;
+  };
   for (const Whiteness& w : channels) {
-    figure.panels.push_back(Correlogram(w.channel, w.autocorrelation, w.error, 1, w.mean_band));
-    figure.panels.push_back(
-        Correlogram(w.channel + " and push", w.push, w.push_error, 0, w.mean_band));
-    const auto add = [&](const char* kind, const std::vector<double>& values,
-                         const std::vector<double>& errors, int first) {
-      for (size_t k = 0; k < values.size(); ++k) {
-        numbers.Add({w.channel, kind, first + static_cast<int>(k), values[k],
-                     k < errors.size() ? errors[k] : 0.0, w.mean_band});
-      }
-    };
-    add("own", w.autocorrelation, w.error, 1);
-    add("push", w.push, w.push_error, 0);
+    add(w, "own", w.channel, w.autocorrelation, w.error, 1);
+    add(w, "push", w.channel + " and push", w.push, w.push_error, 0);
     tests.Add({w.channel, w.autocorrelation.empty() ? "-" : Rounded(w.autocorrelation[0], 2),
                Rounded(w.mean_band, 1), Rounded(w.ljung_box, 3), Rounded(w.ljung_box_p, 2)});
   }

@@ -2,9 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
+#include "ident/problem/fit_problem.h"
 #include "ident/report/report_text.h"
+#include "ident/uncertainty/covariance.h"
+#include "ident/uncertainty/model_verdict.h"
+#include "models/self_terms.h"
 
 namespace pushid {
 namespace {
@@ -48,6 +55,278 @@ Interval Shown(double value, Interval interval) {
   return interval;
 }
 
+TextTable EstimateTable(const FitResult& result) {
+  TextTable table({"parameter", ">value", ">std error", "95 % interval", "unit", "status",
+                   "data/prior/settling, %", ">prior shift, std errors", "prior"});
+  const auto percent = [](double share) { return Rounded(std::round(100.0 * share), 3); };
+  for (const Estimate& e : result.estimates) {
+    if (e.status == EstimateStatus::kFixed) {
+      table.Add({e.name, Rounded(e.value, 4), "-", "-", e.unit, "fixed", "-", "-", ""});
+      continue;
+    }
+    const ParameterSpec* spec = result.options.table.Find(e.name);
+    const Interval shown = e.interval();
+    const Shares& s = e.shares;
+    const bool unknown = e.status == EstimateStatus::kUnidentifiable;
+    const bool no_shares = unknown || e.status == EstimateStatus::kAtBound;
+    const bool no_error = no_shares && e.standard_error <= 0.0;
+    // The shift by priors and settling together, in standard errors of the value.
+    const double pull = (s.prior_pull + s.settling_pull) / e.standard_error;
+    table.Add(
+        {e.name, Rounded(e.value, 4),
+         unknown    ? "infinite"
+         : no_error ? "-"
+                    : Rounded(shown.standard_error, 3),
+         unknown || no_error ? "-" : IntervalText(e.value, shown.lower, shown.upper), e.unit,
+         NameOf(e.status),
+         no_shares ? "-" : percent(s.data) + "/" + percent(s.prior) + "/" + percent(s.settling),
+         no_shares || e.standard_error <= 0.0 ? "-" : (pull > 0.0 ? "+" : "") + Rounded(pull, 2),
+         spec != nullptr && spec->prior
+             ? Rounded(spec->prior->mean, 3) + " +- " + Rounded(spec->prior->sigma, 3)
+             : ""});
+  }
+  return table;
+}
+
+size_t ColumnOf(const FitResult& result, const std::string& name) {
+  const std::vector<Estimate>& fitted = result.uncertainty.estimates;
+  const auto at = std::find_if(fitted.begin(), fitted.end(),
+                               [&name](const Estimate& e) { return e.name == name; });
+  return static_cast<size_t>(at - fitted.begin());
+}
+
+// The assumption that makes up most of a squared total error; null: none does.
+const AssumptionTest* WidensMost(const ModelVerdict& verdict, size_t column, bool measured) {
+  const AssumptionTest* most = nullptr;
+  double widest = 0.0;
+  for (const AssumptionTest& test : verdict.assumptions) {
+    if (measured && StatedErrorKey(test).empty()) continue;
+    const double widens = test.Widens(column, test.stated);
+    if (widens > widest) most = &test, widest = widens;
+  }
+  return most;
+}
+
+// "Measure better ...: a_x becomes identified where the height of the pushes is known to 0.01 m",
+// of estimates that are weak only because of what is taken as known; empty: nothing could be stated
+// better.
+std::string SharperText(const FitResult& result) {
+  const ModelVerdict& verdict = result.verdict;
+  if (verdict.fails() || !verdict.none_identified.empty()) return "";
+  const Uncertainty& u = result.uncertainty;
+  const bool few = u.about_people_like_them && u.num_people < kFewestPeople;
+  std::string text;
+  for (const Estimate& e : result.estimates) {
+    const ParameterSpec* const spec = result.options.table.Find(e.name);
+    const size_t column = ColumnOf(result, e.name);
+    const AssumptionTest* const most = WidensMost(verdict, column, true);
+    if (spec == nullptr || most == nullptr) continue;
+    if (e.status != EstimateStatus::kWeak || few || !Leads(e)) continue;
+    const double width = spec->prior ? spec->prior->sigma : spec->scale;
+    if (!IsNarrow(spec->transform, width, e.lower95, e.upper95)) continue;
+    // The largest of a half, a fifth and a tenth of what is stated by which it would be identified.
+    const Interval total = e.interval();
+    const double variance = total.standard_error * total.standard_error;
+    const double fitted = ToFitted(spec->transform, e.value);
+    for (double share : {0.5, 0.2, 0.1}) {
+      const double stated = share * most->stated;
+      const double left =
+          variance - most->Widens(column, most->stated) + most->Widens(column, stated);
+      const auto end = [&](double natural) {
+        const double half = ToFitted(spec->transform, natural) - fitted;
+        return ToNatural(spec->transform,
+                         fitted + std::sqrt(std::max(0.0, left / variance)) * half);
+      };
+      if (!IsNarrow(spec->transform, width, end(total.lower), end(total.upper))) continue;
+      text += (text.empty() ? "" : "; ") + e.name + " becomes identified where the " + most->name +
+              " is known to " + Rounded(stated, 2) + (most->unit.empty() ? "" : " " + most->unit) +
+              " (stated_errors: " + StatedErrorKey(*most) + ")";
+      break;
+    }
+  }
+  return text.empty() ? "" : "Measure better and state it in the manifest: " + text + ".";
+}
+
+// Beside the interval that decides: that of the data alone, and that of these people alone.
+TextTable PartsTable(const FitResult& result) {
+  TextTable table({"parameter", ">by the data alone", "95 %", ">of these people alone", "95 %",
+                   "unit", "widened most by"});
+  const auto add = [&](const auto& row) {
+    if (!row.total && !row.these) return;
+    const auto cells =
+        [&row](const std::optional<Interval>& i) -> std::pair<std::string, std::string> {
+      if (!i || !(i->standard_error > 0.0)) return {"-", "-"};
+      return {Rounded(i->standard_error, 3), IntervalText(row.value, i->lower, i->upper)};
+    };
+    // "height of the pushes (63 %)"
+    const size_t column = ColumnOf(result, row.name);
+    const AssumptionTest* const most = WidensMost(result.verdict, column, false);
+    std::string widened = "-";
+    if (most != nullptr) {
+      const double part = most->Widens(column, most->stated);
+      const double total = row.interval().standard_error;
+      widened =
+          most->name + " (" + Rounded(100.0 * std::min(1.0, part / (total * total)), 2) + " %)";
+    }
+    const auto own = cells(Interval{row.standard_error, row.lower95, row.upper95});
+    const auto these = cells(row.these);
+    table.Add({row.name, own.first, own.second, these.first, these.second, row.unit, widened});
+  };
+  for (const Estimate& e : result.estimates) {
+    if (e.status != EstimateStatus::kFixed) add(e);
+  }
+  for (const Combination& c : result.derived) add(c);
+  return table;
+}
+
+// The method of the standard errors, and the people they are about: these, or people like them.
+std::string ErrorsText(const FitResult& result) {
+  const Uncertainty& u = result.uncertainty;
+  if (!u.clustered) {
+    return "standard errors: of the posterior, priors included; a single recording says nothing of "
+           "errors between people\n";
+  }
+  double least = INFINITY, most = 0.0;
+  for (const Estimate& e : result.estimates) {
+    if (e.status == EstimateStatus::kFixed || !std::isfinite(e.freedom)) continue;
+    least = std::min(least, e.freedom);
+    most = std::max(most, e.freedom);
+  }
+  const std::string from = Rounded(least, 2), to = Rounded(most, 2);
+  const bool people = u.clustered_by == ClusterBy::kSubject;
+  const std::string text =
+      "standard errors: clustered by " +
+      std::string(people ? (u.two_way ? "person and by who stood together" : "person")
+                         : "recording") +
+      " (" + std::to_string(u.num_clusters) + (people ? " people" : " recordings") +
+      "; Student's t with " + (from == to ? from : from + " to " + to) +
+      (to == "1" ? " degree of freedom" : " degrees of freedom") + ")" +
+      (u.too_few_clusters ? "; correlations are those of independent frames" : "") + "\n";
+  if (u.num_people == 0) return text;  // a model of an older version
+  const std::string number = std::to_string(u.num_people);
+  if (u.about_people_like_them) {
+    return text + "errors and status are about people like these " + number +
+           ": people are the units\n";
+  }
+  return text + (u.num_people == 1
+                     ? "errors and status are about this person: of other people one person says "
+                       "nothing\n"
+                     : "errors and status are about these " + number +
+                           " people, not about people like them: recordings are the units\n");
+}
+
+// The convention that separates mu from Kp, the quoted person, and which gains are tied.
+std::string ConventionText(const FitResult& result) {
+  const ParameterTable& specs = result.options.table;
+  std::vector<std::string> per_frame, tied;
+  for (Parameter id : {kKdX, kKdY, kKdTheta, kKdPhi}) {
+    if (!Acts(id, result.options.model)) continue;
+    per_frame.push_back(specs[id].name + " " + Rounded(kLdpRate * result.parameters[id], 4));
+  }
+  bool one_passive = false;
+  for (const ParameterSpec& spec : specs.specs) {
+    if (!spec.tied_to || !Acts(spec.id, result.options.model)) continue;
+    if (result.parameters[spec.id] == 0.0) continue;
+    one_passive = one_passive || spec.id == kPassiveDamping;
+    if (spec.id != kPassiveDamping) tied.push_back(spec.name + " = " + specs[*spec.tied_to].name);
+  }
+  std::string quoted = std::string(IsOneMachine(result.options.model)
+                                       ? "Gains are those of the recorded body"
+                                       : "Gains are for a person of 85 kg with a rod of 0.95 m") +
+                       " (gain scaling: " + NameOf(result.options.model.gain_scaling) + ").\n";
+  // LDP's Kd multiply differences from frame to frame.
+  if (result.options.preset.rfind("ldp", 0) == 0 && !per_frame.empty()) {
+    quoted += "In LDP's units, per frame of 1/60 s: " + Joined(per_frame) + ".\n";
+  }
+  if (!tied.empty()) {
+    quoted += "Sideways as forwards: " + Joined(tied) + " (--directions=isotropic).\n";
+  }
+  if (one_passive) {
+    quoted +=
+        "One passive share: passive_damping = passive_stiffness (--free=passive_damping: its "
+        "own).\n";
+  }
+  if (!Acts(kMu, result.options.model)) return quoted;
+  bool fitted = false;
+  std::string held;
+  for (const CartDamping& c : CartDampings(result.options.model.friction)) {
+    fitted = fitted || specs[c.gain].free;
+    held += (held.empty() ? "" : ", ") + specs[c.gain].name + " = " +
+            Rounded(result.parameters[c.gain], 4);
+  }
+  return "mu and Kp act on the same velocity: only c = mu + Kp is identifiable. " +
+         (fitted ? std::string("Here Kp is fitted too.")
+                 : "Convention: " + held + " N s/m held, mu = c - Kp.") +
+         "\n" + quoted;
+}
+
+// The shared values, and how far units differ from them.
+TextTable SpreadTable(const FitResult& result) {
+  const FitOptions& o = result.options;
+  TextTable table(
+      {"pooled", ">shared", ">std error", "unit", "spread between " + o.pool_by + "s (1 sigma)"});
+  for (const Estimate& e : result.estimates) {
+    const ParameterSpec* spec = o.table.Find(e.name);
+    if (spec == nullptr || !spec->free || !spec->pooled) continue;
+    const double sigma = PoolingSigma(*spec);
+    const std::string spread = spec->transform == Transform::kLog
+                                   ? "a factor of " + Rounded(std::exp(sigma), 3)
+                               : spec->transform == Transform::kLogit
+                                   ? Rounded(sigma * TransformSlope(spec->transform, e.value), 3)
+                                   : Rounded(sigma, 3);
+    const char* source = o.pooling_sigma                             ? ", given"
+                         : spec->pooling_sigma <= kLeastPoolingSigma ? ", estimated: none found"
+                                                                     : ", estimated";
+    table.Add({e.name, Rounded(e.value, 4), Rounded(e.standard_error, 3), e.unit, spread + source});
+  }
+  return table;
+}
+
+constexpr double kContrastLevel = 0.05;
+
+constexpr int kBars = 24;
+
+ReportFigure CorrelationFigure(const FitResult& result) {
+  const Uncertainty& u = result.uncertainty;
+  // Deviations of units and initial velocities are left out.
+  const size_t size = std::min(result.options.table.Free().size(), u.estimates.size());
+  Chart map{"correlation of the estimates"};
+  map.width = kWidestMap;
+  std::vector<std::string> header = {"parameter"};
+  for (size_t i = 0; i < size; ++i) header.push_back(u.estimates[i].name);
+  TextTable numbers(header);
+  for (size_t i = 0; i < size; ++i) {
+    map.y_categories.push_back(u.estimates[i].name);
+    map.x_categories.push_back(u.estimates[i].name);
+    std::vector<std::string> cells = {u.estimates[i].name};
+    std::vector<double> row;
+    for (size_t j = 0; j < size; ++j) {
+      row.push_back(u.correlation(static_cast<int>(i), static_cast<int>(j)));
+      cells.push_back(DoubleText(row.back()));
+    }
+    map.cells.push_back(row);
+    numbers.Add(cells);
+  }
+  return {
+      "correlation",
+      "Near 1 or -1: the data determine the joint effect of two parameters, but not that of each.",
+      {{}, {map}},
+      numbers};
+}
+
+// True for a combination that is a multiple of one parameter: its curve is drawn already.
+bool IsAlias(const FittedModel& model, const Profile& p) {
+  const FitResult& result = model.fit;
+  const bool parameter = result.options.table.Find(p.name) != nullptr;
+  return !parameter &&
+         std::any_of(model.profiles.begin(), model.profiles.end(), [&](const auto& q) {
+           return &q != &p && result.options.table.Find(q.name) != nullptr &&
+                  q.points.size() == p.points.size() && q.threshold == p.threshold &&
+                  q.cost == p.cost &&
+                  std::abs(q.lower95 / q.estimate - p.lower95 / p.estimate) < 1e-9;
+         });
+}
+
 }  // namespace
 
 ReportFigure IntervalFigure(const FittedModel& model, bool known) {
@@ -87,10 +366,21 @@ ReportFigure IntervalFigure(const FittedModel& model, bool known) {
 
 ReportSection ParameterSection(const FittedModel& model) {
   ReportSection section{"parameters", "Parameters"};
-  section.paragraphs = {SharesNote(), ErrorsText(model.fit), ConventionText(model.fit)};
+  section.paragraphs = {
+      "Shares: fractions of a value's variance due to the data, its prior and the settling "
+      "constraint. Prior shift: how far prior and constraint together move the value, in "
+      "standard errors of the data alone. Prior-held: the data account for less than half.",
+      ErrorsText(model.fit), ConventionText(model.fit)};
   section.Say(SharperText(model.fit));
   section.Show("", EstimateTable(model.fit));
-  section.Show("", DerivedTable(model.fit));
+  TextTable derived({"derived", ">value", ">std error", "95 % interval", "unit"});
+  for (const Combination& c : model.fit.derived) {  // c_x, c_y and gains per mass
+    const Interval shown = c.interval();
+    const bool fixed = c.standard_error == 0.0;
+    derived.Add({c.name, Rounded(c.value, 4), fixed ? "-" : Rounded(shown.standard_error, 3),
+                 fixed ? "-" : IntervalText(c.value, shown.lower, shown.upper), c.unit});
+  }
+  section.Show("", derived);
   section.Show("what the intervals are made of", PartsTable(model.fit));
   if (model.fit.verdict.checked()) {
     section.Say(ModelVerdictText(model.fit.verdict));
@@ -101,11 +391,44 @@ ReportSection ParameterSection(const FittedModel& model) {
 }
 
 ReportSection UnitSection(const FittedModel& model) {
-  const std::string by = model.fit.options.pool_by;
+  const FitResult& fit = model.fit;
+  const std::string by = fit.options.pool_by;
   ReportSection section{"units"};
   const bool may_lack = by != kSubjectUnit && by != kSettingLabel;
   section.title = "By " + by + (may_lack ? " or setting" : "");
-  const TextTable pooled = PooledTable(model.fit);
+  const bool by_setting = !fit.settings.empty();
+  std::vector<std::string> header = {by};
+  if (!by_setting) header.push_back(">kg");
+  header.insert(header.end(), {"parameter", ">value", ">std error", "95 % interval", "unit"});
+  TextTable pooled(header);
+  std::map<std::string, std::pair<Chart, TextTable>> by_parameter;
+  const auto add = [&](const std::vector<std::string>& unit,
+                       const std::map<std::string, Estimate>& estimates) {
+    for (const auto& [name, e] : estimates) {
+      std::vector<std::string> cells = unit;
+      cells.insert(cells.end(), {name, Rounded(e.value, 4), Rounded(e.standard_error, 3),
+                                 IntervalText(e.value, e.lower95, e.upper95), e.unit});
+      if (cells.size() == header.size()) pooled.Add(cells);
+      auto& [chart, numbers] =
+          by_parameter
+              .try_emplace(name, Chart(),
+                           TextTable({"unit", "value", "lower95", "upper95", "shared"}))
+              .first->second;
+      const double shared = fit.parameters[fit.options.table.Find(name)->id];
+      const double row = static_cast<double>(chart.y_categories.size());
+      const Interval shown = Shown(e.value, {e.standard_error, e.lower95, e.upper95});
+      chart.title = WithUnit(name, e.unit);
+      chart.marks = {shared};
+      chart.y_categories.push_back(unit[0]);
+      chart.lines.push_back({{{shown.lower, row}, {shown.upper, row}}, kIntervalLook});
+      chart.lines.push_back({{{e.value, row}}, kMeasuredLook, true});
+      numbers.Add({unit[0], e.value, shown.lower, shown.upper, shared});
+    }
+  };
+  for (const auto& [id, subject] : fit.subjects) {
+    add({id, Rounded(subject.mass_kg, 4)}, subject.pooled);
+  }
+  for (const auto& [setting, estimates] : fit.settings) add({setting}, estimates);
   if (pooled.empty()) return section;
   section.paragraphs = {
       "Partially pooled: each value deviates from the shared value as far as its "
@@ -113,27 +436,6 @@ ReportSection UnitSection(const FittedModel& model) {
   if (may_lack) {
     section.paragraphs.back() += " A recording without a " + by + " is grouped by its setting.";
   }
-  std::map<std::string, std::pair<Chart, TextTable>> by_parameter;
-  const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& estimates) {
-    for (const auto& [name, e] : estimates) {
-      auto& [chart, numbers] =
-          by_parameter
-              .try_emplace(name, Chart(),
-                           TextTable({"unit", "value", "lower95", "upper95", "shared"}))
-              .first->second;
-      const double shared = model.fit.parameters[model.fit.options.table.Find(name)->id];
-      const double row = static_cast<double>(chart.y_categories.size());
-      const Interval shown = Shown(e.value, {e.standard_error, e.lower95, e.upper95});
-      chart.title = WithUnit(name, e.unit);
-      chart.marks = {shared};
-      chart.y_categories.push_back(unit);
-      chart.lines.push_back({{{shown.lower, row}, {shown.upper, row}}, kIntervalLook});
-      chart.lines.push_back({{{e.value, row}}, kMeasuredLook, true});
-      numbers.Add({unit, e.value, shown.lower, shown.upper, shared});
-    }
-  };
-  for (const auto& [id, subject] : model.fit.subjects) add(id, subject.pooled);
-  for (const auto& [setting, estimates] : model.fit.settings) add(setting, estimates);
   for (const auto& [name, drawn] : by_parameter) {
     section.figures.push_back(
         {"units_" + name,
@@ -143,51 +445,9 @@ ReportSection UnitSection(const FittedModel& model) {
          drawn.second});
   }
   section.Show("", pooled);
-  section.Show("", SpreadTable(model.fit));
+  section.Show("", SpreadTable(fit));
   return section;
 }
-
-namespace {
-
-constexpr double kContrastLevel = 0.05;
-
-// Rows have scales of their own with zero in the middle: units differ, signs do not.
-Figure ContrastForest(const Contrast& contrast) {
-  Figure figure;
-  figure.legend = {{"95 %", kIntervalLook}, {"differs after Holm's correction", kToldLook}};
-  for (const ContrastRow& row : contrast.rows) {
-    double reach = std::abs(row.difference);
-    for (double end : {row.lower95, row.upper95}) {
-      if (std::isfinite(end)) reach = std::max(reach, std::abs(end));
-    }
-    reach = reach > 0.0 ? 1.08 * reach : 1.0;
-    Chart strip = IntervalStrip({row.name,
-                                 row.unit,
-                                 row.difference,
-                                 0.0,
-                                 {{{0.0, row.lower95, row.upper95},
-                                   row.p_holm < kContrastLevel ? kToldLook : kIntervalLook}}});
-    strip.y_label = "Holm's p " + Rounded(row.p_holm, 2);
-    strip.x_from = -reach;
-    strip.x_to = reach;
-    figure.panels.push_back(strip);
-  }
-  return figure;
-}
-
-TextTable ContrastNumbers(const Contrast& contrast) {
-  TextTable numbers({"parameter", "unit", "first", "second", "difference", "lower95", "upper95",
-                     "effect_sd", "p", "p_holm"});
-  for (const ContrastRow& row : contrast.rows) {
-    numbers.Add(std::vector<std::string>{
-        row.name, row.unit, DoubleText(row.first), DoubleText(row.second),
-        DoubleText(row.difference), DoubleText(row.lower95), DoubleText(row.upper95),
-        row.effect ? DoubleText(*row.effect) : "", DoubleText(row.p), DoubleText(row.p_holm)});
-  }
-  return numbers;
-}
-
-}  // namespace
 
 ReportSection ContrastSection(const FittedModel& model) {
   ReportSection section{"contrast"};
@@ -196,99 +456,34 @@ ReportSection ContrastSection(const FittedModel& model) {
   section.title = "By " + contrast.label + ": " + contrast.second + " less " + contrast.first;
   section.Say(ContrastText(model.fit));
   section.Show("", ContrastTable(contrast));
+  // Rows have scales of their own with zero in the middle: units differ, signs do not.
+  Figure forest;
+  forest.legend = {{"95 %", kIntervalLook}, {"differs after Holm's correction", kToldLook}};
+  TextTable numbers({"parameter", "unit", "first", "second", "difference", "lower95", "upper95",
+                     "effect_sd", "p", "p_holm"});
+  for (const ContrastRow& row : contrast.rows) {
+    double reach = std::abs(row.difference);
+    for (double end : {row.lower95, row.upper95}) {
+      if (std::isfinite(end)) reach = std::max(reach, std::abs(end));
+    }
+    reach = reach > 0.0 ? 1.08 * reach : 1.0;
+    const char* const look = row.p_holm < kContrastLevel ? kToldLook : kIntervalLook;
+    Chart& strip = forest.panels.emplace_back(IntervalStrip(
+        {row.name, row.unit, row.difference, 0.0, {{{0.0, row.lower95, row.upper95}, look}}}));
+    strip.y_label = "Holm's p " + Rounded(row.p_holm, 2);
+    strip.x_from = -reach;
+    strip.x_to = reach;
+    numbers.Add({row.name, row.unit, row.first, row.second, row.difference, row.lower95,
+                 row.upper95, row.effect ? TableCell(*row.effect) : TableCell(""), row.p,
+                 row.p_holm});
+  }
   section.figures.push_back(
       {"contrast",
        "Differences (dots) with their 95 % intervals. Every row has its own "
        "scale around zero (upright line); an open interval extends to the edge.",
-       ContrastForest(contrast), ContrastNumbers(contrast)});
+       forest, numbers});
   return section;
 }
-
-namespace {
-
-constexpr int kBars = 24;
-
-ReportFigure CorrelationFigure(const FitResult& result) {
-  const Uncertainty& u = result.uncertainty;
-  // Without deviations and velocities.
-  const size_t size = std::min(result.options.table.Free().size(), u.estimates.size());
-  Chart map{"correlation of the estimates"};
-  map.width = kWidestMap;
-  std::vector<std::string> header = {"parameter"};
-  for (size_t i = 0; i < size; ++i) header.push_back(u.estimates[i].name);
-  TextTable numbers(header);
-  for (size_t i = 0; i < size; ++i) {
-    map.y_categories.push_back(u.estimates[i].name);
-    map.x_categories.push_back(u.estimates[i].name);
-    std::vector<std::string> cells = {u.estimates[i].name};
-    std::vector<double> row;
-    for (size_t j = 0; j < size; ++j) {
-      row.push_back(u.correlation(static_cast<int>(i), static_cast<int>(j)));
-      cells.push_back(DoubleText(row.back()));
-    }
-    map.cells.push_back(row);
-    numbers.Add(cells);
-  }
-  return {
-      "correlation",
-      "Near 1 or -1: the data determine the joint effect of two parameters, but not that of each.",
-      {{}, {map}},
-      numbers};
-}
-
-// Whether a combination is a multiple of one parameter, whose curve it would draw again.
-bool IsAlias(const FittedModel& model, const Profile& p) {
-  const FitResult& result = model.fit;
-  const bool parameter = result.options.table.Find(p.name) != nullptr;
-  return !parameter &&
-         std::any_of(model.profiles.begin(), model.profiles.end(), [&](const auto& q) {
-           return &q != &p && result.options.table.Find(q.name) != nullptr &&
-                  q.points.size() == p.points.size() && q.threshold == p.threshold &&
-                  q.cost == p.cost &&
-                  std::abs(q.lower95 / q.estimate - p.lower95 / p.estimate) < 1e-9;
-         });
-}
-
-Chart ProfileChart(const Profile& p) {
-  Chart chart{p.name, WithUnit(p.name, p.unit)};
-  chart.Shrink();
-  ChartLine line{{}, kPredictedLook}, dots{{}, kDotLook, true};
-  for (const ProfilePoint& point : p.points) {
-    line.points.emplace_back(point.value, (point.cost - p.cost) / p.threshold);
-  }
-  dots.points = line.points;
-  chart.lines = {line, dots};
-  chart.levels = {1.0};
-  chart.marks = {p.estimate};
-  chart.y_from = -0.1;
-  chart.y_to = 2.0;
-  return chart;
-}
-
-Chart Histogram(const std::vector<double>& values, const std::string& name, const std::string& unit,
-                double estimate) {
-  Chart chart{name, WithUnit(name, unit), "replicas"};
-  chart.Shrink();
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  const double width = (*high - *low) / kBars;
-  std::vector<int> counts(kBars, 0);
-  for (double value : values) {
-    ++counts[width > 0.0 ? std::min(kBars - 1, static_cast<int>((value - *low) / width)) : 0];
-  }
-  ChartBand bars{{}, {}, "stroke:none;fill:#cc79a7;fill-opacity:.75"};
-  for (int k = 0; k < kBars; ++k) {
-    for (const double x : {*low + k * width, *low + (k + 1) * width}) {
-      bars.lower.emplace_back(x, 0.0);
-      bars.upper.emplace_back(x, counts[k]);
-    }
-  }
-  chart.bands = {bars};
-  chart.marks = {estimate};
-  chart.y_from = 0.0;
-  return chart;
-}
-
-}  // namespace
 
 ReportSection IdentifiabilitySection(const FittedModel& model) {
   ReportSection section{"identifiability", "Identifiability"};
@@ -306,7 +501,19 @@ ReportSection IdentifiabilitySection(const FittedModel& model) {
     section.Say("Prior-dependent: " + held);
   }
   for (const std::string& note : d.start.notes) section.Say("Start: " + note);
-  section.Say(CorrelationText(model.fit));
+  const Uncertainty& u = model.fit.uncertainty;
+  std::string correlated;
+  for (int i = 0; i < u.correlation.rows(); ++i) {
+    for (int j = i + 1; j < u.correlation.cols(); ++j) {
+      const bool deviation = u.estimates[j].name.find('[') != std::string::npos;  // of a unit
+      if (std::abs(u.correlation(i, j)) < 0.9 || deviation) continue;
+      correlated += "  " + u.estimates[i].name + " and " + u.estimates[j].name + ": " +
+                    Rounded(u.correlation(i, j), 2) + "\n";
+    }
+  }
+  section.Say(correlated.empty()
+                  ? ""
+                  : "correlations beyond 0.9 (the data separate these poorly):\n" + correlated);
   section.figures.push_back(CorrelationFigure(model.fit));
   return section;
 }
@@ -326,10 +533,19 @@ ReportSection ProfileSection(const FittedModel& model) {
     if (p.lower_end != "threshold" || p.upper_end != "threshold") {
       ends.Add({p.name, p.lower_end, p.upper_end});
     }
-    if (p.points.size() > 1 && !IsAlias(model, p)) figure.panels.push_back(ProfileChart(p));
+    Chart chart{p.name, WithUnit(p.name, p.unit)};
+    chart.Shrink();
+    ChartPoints points;
     for (const ProfilePoint& point : p.points) {
+      points.emplace_back(point.value, (point.cost - p.cost) / p.threshold);
       numbers.Add({p.name, p.unit, point.value, point.cost - p.cost, p.threshold});
     }
+    chart.lines = {{points, kPredictedLook}, {points, kDotLook, true}};
+    chart.levels = {1.0};
+    chart.marks = {p.estimate};
+    chart.y_from = -0.1;
+    chart.y_to = 2.0;
+    if (p.points.size() > 1 && !IsAlias(model, p)) figure.panels.push_back(chart);
   }
   section.Show("profiles that ended elsewhere than at the threshold", ends);
   section.figures.push_back(
@@ -359,7 +575,25 @@ ReportSection BootstrapSection(const FittedModel& model) {
     if (estimate == nullptr) continue;  // combinations are their parameter on another scale
     std::vector<double> values;
     for (const auto& row : b.values) values.push_back(row[i]);
-    figure.panels.push_back(Histogram(values, b.names[i], b.units[i], estimate->value));
+    Chart& chart =
+        figure.panels.emplace_back(Chart{b.names[i], WithUnit(b.names[i], b.units[i]), "replicas"});
+    chart.Shrink();
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    const double width = (*high - *low) / kBars;
+    std::vector<int> counts(kBars, 0);
+    for (double value : values) {
+      ++counts[width > 0.0 ? std::min(kBars - 1, static_cast<int>((value - *low) / width)) : 0];
+    }
+    ChartBand bars{{}, {}, "stroke:none;fill:#cc79a7;fill-opacity:.75"};
+    for (int k = 0; k < kBars; ++k) {
+      for (const double x : {*low + k * width, *low + (k + 1) * width}) {
+        bars.lower.emplace_back(x, 0.0);
+        bars.upper.emplace_back(x, counts[k]);
+      }
+    }
+    chart.bands = {bars};
+    chart.marks = {estimate->value};
+    chart.y_from = 0.0;
   }
   TextTable numbers(header);
   for (const auto& row : b.values) {

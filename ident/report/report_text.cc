@@ -17,18 +17,144 @@
 namespace pushid {
 namespace {
 
-std::string TrainingText(const FitOptions& o) {
-  std::string text =
-      o.network_prior > 0.0 ? "prior " + Rounded(o.network_prior, 4) : std::string("no prior");
-  if (o.model.learned->num_weights() > kMostGaussNewtonWeights) {
-    text += ", trained together with the free parameters by Adam, fixed while errors were computed";
-  }
-  return text;
-}
-
 using Place = nlohmann::ordered_json::json_pointer;
 
 constexpr double kFileRounding = 1e-6;  // of a parameter
+
+constexpr int kFewUnits = 5;  // of fewer a bootstrap has too few distinct resamples
+
+constexpr double kFar = 0.5;  // shares beyond it are no more than a direction: tests are linear
+constexpr double kLargestFactor = 10.0;
+constexpr size_t kNamedSuspects = 3;
+
+struct Remedy {
+  const char* name;  // of an assumption
+  const char* key;   // among stated_errors
+  const char* text;
+};
+constexpr Remedy kRemedies[] = {
+    {"scale of the pushes", "push_scale",
+     "check the unit and the calibration of the force, and the masses"},
+    {"lag of the pushes", "push_lag_frames", "check the clocks of forces and cameras"},
+    {"height of the pushes", "push_height_m", "check at which height the pushes act"},
+    {"zero of the pushes", "push_zero_N", "check what the sensor reads before the push"},
+    {"masses", "mass", "check the masses, and the unit of the force"},
+    {"frame rate", "frame_rate", "check the frame rate"},
+    {"drift of the cameras", "drift_m",
+     "check whether positions drift, or people walk before the push"},
+    {kReactionDelayName, "reaction_delay_s", "try --delay=one"}};
+
+// The remedy for a quantity of the laboratory; null where the model has it as a parameter.
+const Remedy* FindRemedy(const AssumptionTest& test) {
+  const auto found = std::find_if(std::begin(kRemedies), std::end(kRemedies),
+                                  [&test](const Remedy& r) { return r.name == test.name; });
+  return found == std::end(kRemedies) ? nullptr : found;
+}
+
+// A value without a unit is a share, or for a held gain the logarithm of a factor.
+bool IsLogarithm(const AssumptionTest& test) {
+  return test.unit.empty() && FindRemedy(test) == nullptr;
+}
+
+// "0.6 +- 0.2 frames", "-3 +- 1 %", "factor 0.74 (0.6 to 0.91)". One Newton step is linear, so a
+// factor beyond kLargestFactor is no more than a direction.
+std::string ValueText(const AssumptionTest& test) {
+  if (IsLogarithm(test)) {
+    if (std::abs(test.wanted) > std::log(kLargestFactor)) {
+      return test.wanted > 0.0 ? "much larger" : "much smaller";
+    }
+    return "factor " + Rounded(std::exp(test.wanted), 2) + " (" +
+           Rounded(std::exp(test.wanted - test.error), 2) + " to " +
+           Rounded(std::exp(test.wanted + test.error), 2) + ")";
+  }
+  const double factor = test.unit.empty() ? 100.0 : 1.0;
+  return Rounded(factor * test.wanted, 2) + " +- " + Rounded(factor * test.error, 2) + " " +
+         (test.unit.empty() ? "%" : test.unit);
+}
+
+// "+- 3 %", "factor 2".
+std::string StatedText(const AssumptionTest& test) {
+  if (!(test.stated > 0.0)) return "-";
+  if (IsLogarithm(test) && test.stated > std::log(kLargestFactor)) return "any factor";
+  if (IsLogarithm(test)) return "factor " + Rounded(std::exp(test.stated), 2);
+  return "+- " + (test.unit.empty() ? Rounded(100.0 * test.stated, 2) + " %"
+                                    : Rounded(test.stated, 2) + " " + test.unit);
+}
+
+// "the lag of the pushes 0.6 +- 0.2 frames larger", "Kd_theta 40 % smaller".
+std::string WantedText(const AssumptionTest& test) {
+  const bool share = test.unit.empty();
+  const double size = std::abs(IsLogarithm(test) ? std::expm1(test.wanted) : test.wanted);
+  const double factor = share ? 100.0 : 1.0;
+  const std::string how_much = share && size > kFar ? "more than a half"
+                                                    : Rounded(factor * size, 2) + " +- " +
+                                                          Rounded(factor * test.error, 2) +
+                                                          (share              ? " %"
+                                                           : test.unit == "1" ? ""
+                                                                              : " " + test.unit);
+  return test.name + " " + how_much + (test.wanted > 0.0 ? " larger" : " smaller");
+}
+
+template <typename Test>
+const Test* Surest(const std::vector<Test>& tests) {
+  const auto least = std::min_element(tests.begin(), tests.end(),
+                                      [](const Test& a, const Test& b) { return a.p < b.p; });
+  return least == tests.end() ? nullptr : &*least;
+}
+
+// Assumptions that the recordings contradict, the surest first: measured ones; without any, held
+// gains; without any, terms that are left out, which can imitate all others.
+std::vector<const AssumptionTest*> Suspects(const ModelVerdict& v) {
+  if (v.p_assumptions >= kVerdictLevel) return {};
+  const double tests = static_cast<double>(v.NumTested());
+  std::vector<const AssumptionTest*> kinds[3];
+  for (const AssumptionTest& test : v.assumptions) {
+    if (test.p * tests >= kVerdictLevel) continue;
+    kinds[FindRemedy(test) != nullptr ? 0 : test.stated > 0.0 ? 1 : 2].push_back(&test);
+  }
+  for (auto& kind : kinds) {
+    if (kind.empty()) continue;
+    std::sort(kind.begin(), kind.end(),
+              [](const AssumptionTest* a, const AssumptionTest* b) { return a->p < b->p; });
+    kind.resize(std::min(kind.size(), kNamedSuspects));
+    return kind;
+  }
+  return {};
+}
+
+// Findings that contradict the model.
+std::vector<std::string> Contradictions(const ModelVerdict& v) {
+  std::vector<std::string> found = v.of_pushes;
+  const auto add = [&found](const std::string& what) { found.push_back(what); };
+  const std::vector<const AssumptionTest*> wanted = Suspects(v);
+  if (!wanted.empty()) {
+    const Remedy* const remedy = FindRemedy(*wanted.front());
+    std::string all;
+    for (const AssumptionTest* test : wanted)
+      all += (all.empty() ? "" : ", or ") + WantedText(*test);
+    add("of what is taken as known, the recordings want " + all +
+        " (p = " + Rounded(v.p_assumptions, 2) + " after " + std::to_string(v.NumTested()) +
+        " tests); " + (remedy != nullptr ? remedy->text : "try --free=" + wanted.front()->name));
+  }
+  const PartTest* part = Surest(v.parts);
+  if (part != nullptr && v.p_parts < kVerdictLevel) {
+    add(part->part + " ask for another " + part->parameter + " than all of them (p = " +
+        Rounded(v.p_parts, 2) + " after " + std::to_string(v.parts.size()) + " tests)");
+    if (part->part == kFromTheSide) found.back() += "; try --directions=body";
+  }
+  const MotionTest* motion = Surest(v.motion.tests);
+  if (motion != nullptr && v.p_motion < kVerdictLevel) {
+    const std::string unit = motion->unit.empty() ? "" : " " + motion->unit;
+    add(std::string("the recorded ") + motion->quantity + " differs from the predicted one by " +
+        Rounded(motion->difference, 2) + " +- " + Rounded(motion->error, 2) + unit + " (p = " +
+        Rounded(v.p_motion, 2) + " after " + std::to_string(v.motion.tests.size()) + " tests)");
+  }
+  if (v.motion.explained < kLeastExplained) {
+    add("it explains " + Rounded(100.0 * v.motion.explained, 2) +
+        " % of the hip's squared displacement in the median recording");
+  }
+  return found;
+}
 
 }  // namespace
 
@@ -36,7 +162,14 @@ std::string NetworkText(const FitResult& result) {
   const auto& network = result.options.model.learned;
   if (network == nullptr) return "";
   return (network->shape.any() ? "network " : "") + LearnedName(*network) + " (" +
-         CountText(network->num_weights(), "weight") + ", " + TrainingText(result.options) + ")";
+         CountText(network->num_weights(), "weight") + ", " +
+         (result.options.network_prior > 0.0 ? "prior " + Rounded(result.options.network_prior, 4)
+                                             : "no prior") +
+         (network->num_weights() > kMostGaussNewtonWeights
+              ? ", trained together with the free parameters by Adam, fixed while errors were "
+                "computed"
+              : "") +
+         ")";
 }
 
 std::string LikelihoodText(const FitResult& result) {
@@ -127,16 +260,6 @@ std::string ForecastText(const ForecastRule& f) {
          Rounded(f.tail, 2) + " times as strong and as long as the model's.\n";
 }
 
-namespace {
-
-constexpr int kFewUnits = 5;  // of fewer a bootstrap has too few distinct resamples
-
-std::string OrDash(double value, const std::optional<Interval>& interval) {
-  return interval ? IntervalText(value, interval->lower, interval->upper, 3) : "-";
-}
-
-}  // namespace
-
 std::optional<Interval> ProfileInterval(const FittedModel& model, const std::string& name) {
   for (const Profile& p : model.profiles) {
     if (p.name == name) return Interval{0.0, p.lower95, p.upper95};
@@ -167,9 +290,12 @@ TextTable IntervalTable(const FittedModel& model) {
         classification += ", by the data alone " + NameOf(*p.by_data_alone);
       }
     }
+    const auto text = [&](const std::optional<Interval>& i) {
+      return i ? IntervalText(row.value, i->lower, i->upper, 3) : "-";
+    };
     table.Add({WithUnit(row.name, row.unit), Rounded(row.value, 3),
-               IntervalText(row.value, row.lower95, row.upper95, 3), OrDash(row.value, profile),
-               OrDash(row.value, bootstrap), classification});
+               text(Interval{0.0, row.lower95, row.upper95}), text(profile), text(bootstrap),
+               classification});
   };
   for (const Estimate& e : model.fit.estimates) {
     if (e.status != EstimateStatus::kFixed) add(e);
@@ -198,32 +324,24 @@ std::string ResamplingText(const Bootstrap& b) {
   return text;
 }
 
-namespace {
-
-// Recordings of which the model explains less than nothing; empty: there are none.
-std::string WorseThanStaticText(const std::vector<RecordingDiagnostics>& recordings) {
-  std::vector<std::string> ids;
+std::string FirstSentences(const FitResult& result, bool brief) {
+  const std::vector<RecordingDiagnostics>& recordings = result.diagnostics.recordings;
+  std::vector<std::string> ids;  // of recordings of which the model explains less than nothing
   const RecordingDiagnostics* worst = nullptr;
   for (const RecordingDiagnostics& r : recordings) {
     if (!WorseThanStatic(r)) continue;
     ids.push_back(r.id);
     if (worst == nullptr || r.explained < worst->explained) worst = &r;
   }
-  if (worst == nullptr) return "";
+  if (worst == nullptr) return ModelVerdictText(result.verdict, false, brief);
   const bool most = 2 * ids.size() >= recordings.size();
   return std::string(most ? "This fit loses to standing still, which" : "Standing still") +
          " predicts " + std::to_string(ids.size()) + " of " + std::to_string(recordings.size()) +
          " recordings better (" + ListOfNames(ids, 3, "recordings") +
          "; the worst is explained to " + Rounded(worst->explained, 3) + " %)" +
          (most ? ": do not use the gains; try another --stance, and check pushes and axes. "
-               : ". ");
-}
-
-}  // namespace
-
-std::string FirstSentences(const FitResult& result, bool brief) {
-  const std::string worse = WorseThanStaticText(result.diagnostics.recordings);
-  return worse + ModelVerdictText(result.verdict, !worse.empty(), brief);
+               : ". ") +
+         ModelVerdictText(result.verdict, true, brief);
 }
 
 Screen ScreenOf(const FittedModel& model) {
@@ -246,184 +364,35 @@ Screen ScreenOf(const FittedModel& model) {
   return screen;
 }
 
-namespace {
-
-constexpr double kFar = 0.5;  // shares beyond it are no more than a direction: tests are linear
-
-constexpr double kLargestFactor = 10.0;
-
-constexpr size_t kNamedSuspects = 3;
-
-struct Remedy {
-  const char* name;  // of an assumption
-  const char* key;   // among stated_errors
-  const char* text;
-};
-constexpr Remedy kRemedies[] = {
-    {"scale of the pushes", "push_scale",
-     "check the unit and the calibration of the force, and the masses"},
-    {"lag of the pushes", "push_lag_frames", "check the clocks of forces and cameras"},
-    {"height of the pushes", "push_height_m", "check at which height the pushes act"},
-    {"zero of the pushes", "push_zero_N", "check what the sensor reads before the push"},
-    {"masses", "mass", "check the masses, and the unit of the force"},
-    {"frame rate", "frame_rate", "check the frame rate"},
-    {"drift of the cameras", "drift_m",
-     "check whether positions drift, or people walk before the push"},
-    {kReactionDelayName, "reaction_delay_s", "try --delay=one"}};
-
-// The remedy for a quantity of the laboratory; null where the model has it as a parameter.
-const Remedy* FindRemedy(const AssumptionTest& test) {
-  const auto found = std::find_if(std::begin(kRemedies), std::end(kRemedies),
-                                  [&test](const Remedy& r) { return r.name == test.name; });
-  return found == std::end(kRemedies) ? nullptr : found;
-}
-
-// A value without a unit is a share, or for a held gain the logarithm of a factor.
-bool IsLogarithm(const AssumptionTest& test) {
-  return test.unit.empty() && FindRemedy(test) == nullptr;
-}
-
-// "0.6 +- 0.2 frames", "-3 +- 1 %", "factor 0.74 (0.6 to 0.91)". One Newton step is linear, so a
-// factor beyond kLargestFactor is no more than a direction.
-std::string ValueText(const AssumptionTest& test) {
-  if (IsLogarithm(test)) {
-    if (std::abs(test.wanted) > std::log(kLargestFactor)) {
-      return test.wanted > 0.0 ? "much larger" : "much smaller";
-    }
-    return "factor " + Rounded(std::exp(test.wanted), 2) + " (" +
-           Rounded(std::exp(test.wanted - test.error), 2) + " to " +
-           Rounded(std::exp(test.wanted + test.error), 2) + ")";
-  }
-  const double factor = test.unit.empty() ? 100.0 : 1.0;
-  return Rounded(factor * test.wanted, 2) + " +- " + Rounded(factor * test.error, 2) + " " +
-         (test.unit.empty() ? "%" : test.unit);
-}
-
-// "+- 3 %", "factor 2".
-std::string StatedText(const AssumptionTest& test) {
-  if (!(test.stated > 0.0)) return "-";
-  if (IsLogarithm(test) && test.stated > std::log(kLargestFactor)) return "any factor";
-  if (IsLogarithm(test)) return "factor " + Rounded(std::exp(test.stated), 2);
-  return test.unit.empty() ? "+- " + Rounded(100.0 * test.stated, 2) + " %"
-                           : "+- " + Rounded(test.stated, 2) + " " + test.unit;
-}
-
-// "the lag of the pushes 0.6 +- 0.2 frames larger", "Kd_theta 40 % smaller".
-std::string WantedText(const AssumptionTest& test) {
-  const bool share = test.unit.empty();
-  const double size = std::abs(IsLogarithm(test) ? std::expm1(test.wanted) : test.wanted);
-  const double factor = share ? 100.0 : 1.0;
-  const std::string how_much = share && size > kFar ? "more than a half"
-                                                    : Rounded(factor * size, 2) + " +- " +
-                                                          Rounded(factor * test.error, 2) +
-                                                          (share              ? " %"
-                                                           : test.unit == "1" ? ""
-                                                                              : " " + test.unit);
-  return test.name + " " + how_much + (test.wanted > 0.0 ? " larger" : " smaller");
-}
-
-template <typename Test>
-const Test* Surest(const std::vector<Test>& tests) {
-  const auto least = std::min_element(tests.begin(), tests.end(),
-                                      [](const Test& a, const Test& b) { return a.p < b.p; });
-  return least == tests.end() ? nullptr : &*least;
-}
-
-// Assumptions that the recordings contradict, the surest first: measured ones; without any, held
-// gains; without any, terms that are left out, which can imitate all others.
-std::vector<const AssumptionTest*> Suspects(const ModelVerdict& v) {
-  if (v.p_assumptions >= kVerdictLevel) return {};
-  const double tests = static_cast<double>(v.NumTested());
-  std::vector<const AssumptionTest*> kinds[3];
-  for (const AssumptionTest& test : v.assumptions) {
-    if (test.p * tests >= kVerdictLevel) continue;
-    kinds[FindRemedy(test) != nullptr ? 0 : test.stated > 0.0 ? 1 : 2].push_back(&test);
-  }
-  for (auto& kind : kinds) {
-    if (kind.empty()) continue;
-    std::sort(kind.begin(), kind.end(),
-              [](const AssumptionTest* a, const AssumptionTest* b) { return a->p < b->p; });
-    kind.resize(std::min(kind.size(), kNamedSuspects));
-    return kind;
-  }
-  return {};
-}
-
-// What contradicts the model, one finding each.
-std::vector<std::string> Contradictions(const ModelVerdict& v) {
-  std::vector<std::string> found = v.of_pushes;
-  const auto add = [&found](const std::string& what) { found.push_back(what); };
-  const std::vector<const AssumptionTest*> wanted = Suspects(v);
-  if (!wanted.empty()) {
-    const Remedy* const remedy = FindRemedy(*wanted.front());
-    std::string all;
-    for (const AssumptionTest* test : wanted)
-      all += (all.empty() ? "" : ", or ") + WantedText(*test);
-    add("of what is taken as known, the recordings want " + all +
-        " (p = " + Rounded(v.p_assumptions, 2) + " after " + std::to_string(v.NumTested()) +
-        " tests); " + (remedy != nullptr ? remedy->text : "try --free=" + wanted.front()->name));
-  }
-  const PartTest* part = Surest(v.parts);
-  if (part != nullptr && v.p_parts < kVerdictLevel) {
-    add(part->part + " ask for another " + part->parameter + " than all of them (p = " +
-        Rounded(v.p_parts, 2) + " after " + std::to_string(v.parts.size()) + " tests)");
-    if (part->part == kFromTheSide) found.back() += "; try --directions=body";
-  }
-  const MotionTest* motion = Surest(v.motion.tests);
-  if (motion != nullptr && v.p_motion < kVerdictLevel) {
-    const std::string unit = motion->unit.empty() ? "" : " " + motion->unit;
-    add(std::string("the recorded ") + motion->quantity + " differs from the predicted one by " +
-        Rounded(motion->difference, 2) + " +- " + Rounded(motion->error, 2) + unit + " (p = " +
-        Rounded(v.p_motion, 2) + " after " + std::to_string(v.motion.tests.size()) + " tests)");
-  }
-  if (v.motion.explained < kLeastExplained) {
-    add("it explains " + Rounded(100.0 * v.motion.explained, 2) +
-        " % of the hip's squared displacement in the median recording");
-  }
-  return found;
-}
-
-std::string CheckText(const ModelVerdict& v, bool more, bool brief) {
-  if (!v.checked()) return "The model was not checked: " + v.not_checked + ".";
+std::string ModelVerdictText(const ModelVerdict& v, bool more, bool brief) {
+  const std::string none =
+      v.none_identified.empty() ? "" : "Nothing is identified: " + v.none_identified + ". ";
+  if (!v.checked()) return none + "The model was not checked: " + v.not_checked + ".";
   if (v.fails()) {
     const std::vector<std::string> found = Contradictions(v);
     const std::string rest = std::to_string(found.size() - std::min<size_t>(1, found.size()));
     const bool cut = brief && found.size() > 1;
-    return "The model does not fit these recordings: " +
+    return none + "The model does not fit these recordings: " +
            (cut ? found.front() + "; " + rest + " more by --details" : Joined(found, "; ")) +
            ". Nothing is called identified.";
   }
   const std::string explains =
       std::isnan(v.motion.explained)
           ? std::string("the motion was not recorded.")
-          : "the model explains " + Rounded(100.0 * v.motion.explained, 3) +
+          : std::string(brief ? "the model" : "it") + " explains " +
+                Rounded(100.0 * v.motion.explained, 3) +
                 " % of the hip's squared displacement in the median recording.";
-  if (brief) {
-    return std::string("The model check found no ") + (more ? "other " : "") + "contradiction; " +
-           explains;
-  }
-  return std::string("The model check found no ") + (more ? "other " : "") +
-         "contradiction: " + std::to_string(v.NumTested()) +
+  const std::string check =
+      none + "The model check found no " + (more ? "other " : "") + "contradiction";
+  if (brief) return check + "; " + explains;
+  return check + ": " + std::to_string(v.NumTested()) +
          " quantities that are taken as known (p = " + Rounded(v.p_assumptions, 2) + "), " +
          CountText(v.parts.size(), "score") +
          " of parts of the data (p = " + Rounded(v.p_parts, 2) + ") and " +
          CountText(v.motion.tests.size(), "measure") +
          " of feet and hips (p = " + Rounded(v.p_motion, 2) + "; each after all tests, " +
          std::to_string(v.freedom) + " degrees of freedom; less than " + Rounded(kVerdictLevel, 2) +
-         " contradicts)" +
-         (std::isnan(v.motion.explained)
-              ? std::string("; the motion was not recorded.")
-              : "; it explains " + Rounded(100.0 * v.motion.explained, 3) +
-                    " % of the hip's squared displacement in the median "
-                    "recording.");
-}
-
-}  // namespace
-
-std::string ModelVerdictText(const ModelVerdict& v, bool more, bool brief) {
-  const std::string none =
-      v.none_identified.empty() ? "" : "Nothing is identified: " + v.none_identified + ". ";
-  return none + CheckText(v, more, brief);
+         " contradicts); " + explains;
 }
 
 std::string StatedErrorKey(const AssumptionTest& test) {

@@ -14,8 +14,8 @@
 
 namespace pushid {
 
-// What standing still predicts better, if anything, and the verdict on the model; brief: without
-// the numbers of its tests, and with its first finding alone.
+// Recordings that standing still predicts better, and the verdict on the model; brief: without the
+// numbers of its tests, and with its first finding alone.
 std::string FirstSentences(const FitResult& result, bool brief = false);
 
 // The first screen of a fit: verdict, values, gains, warnings, and the first advice. The rest is
@@ -59,7 +59,7 @@ std::string ModelVerdictText(const ModelVerdict& verdict, bool more = false, boo
 // Its name among a manifest's stated_errors; empty of what the laboratory does not measure.
 std::string StatedErrorKey(const AssumptionTest& test);
 
-// What was taken as known, what is stated about it, what the recordings want, and the test.
+// A row for each quantity that was taken as known: stated error, wanted value, test.
 TextTable AssumptionTable(const FitResult& result);
 
 }  // namespace pushid

@@ -1,4 +1,3 @@
-// ident: scores of folds, paired differences.
 #include "ident/validation/crossvalidation.h"
 
 #include <Eigen/Core>
@@ -105,10 +104,107 @@ FoldPrediction ScoreRidge(const std::vector<PendulumRecording>& recordings,
     for (int t = 0; t < r.num_frames(); ++t) {
       paths[r.pushed_person][t] += move.segment<3>(3 * t).transpose();
     }
-    for (auto& path : paths) path.resize(r.num_frames());
     prediction.scores.push_back(ScoreHip(r, paths));
   }
   return prediction;
+}
+
+// Sums of each recording's scores over the folds that held it out, and their number.
+struct Sums {
+  std::vector<RecordingScore> scores;
+  std::vector<int> counts;
+};
+
+// Each person's probabilities follow from the held-out margins of everybody else: margins of
+// recordings that were fitted err less, and a person's own steps are what is to be predicted.
+void PredictStepsWithoutThePerson(std::vector<RecordingScore>* scores) {
+  std::vector<StepOutcome> all;
+  std::set<std::string> people;
+  for (const RecordingScore& score : *scores) {
+    for (const StepPrediction& step : score.steps) {
+      all.push_back({step.margin, step.stepped, step.person});
+      people.insert(step.person);
+    }
+  }
+  for (const std::string& person : people) {
+    std::vector<StepOutcome> others;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(others),
+                 [&](const StepOutcome& outcome) { return outcome.person != person; });
+    const std::optional<StepProbability> fitted = FitStepProbability(others);
+    for (RecordingScore& score : *scores) {
+      for (StepPrediction& step : score.steps) {
+        if (step.person == person && fitted) step.probability = fitted->At(step.margin);
+      }
+    }
+  }
+}
+
+// Adds a fold to the result, and its scores to the sums.
+void AddFold(const Fold& fold, const FoldPrediction& prediction, Sums* sums,
+             CrossValidation* result) {
+  FoldScore& of_fold = result->folds.emplace_back();
+  of_fold.name = fold.name;
+  of_fold.held_out = static_cast<int>(fold.held_out.size());
+  of_fold.behaviour = prediction.behaviour;
+  std::vector<const PropagationScore*> propagation;
+  for (size_t k = 0; k < prediction.scores.size(); ++k) {
+    const RecordingScore& score = prediction.scores[k];
+    RecordingScore& sum = sums->scores[fold.held_out[k]];
+    sum.id = score.id;
+    sum.frames = score.frames;
+    sum.fell = sum.fell || score.fell;
+    of_fold.falls += score.fell;
+    result->falls_harder += score.fell_harder;
+    if (!score.failure.empty()) {
+      ++of_fold.failures;
+      sum.failure = score.failure;
+      continue;
+    }
+    ++sums->counts[fold.held_out[k]];
+    sum.value += score.value;
+    of_fold.value += score.value;
+    sum.propagation.Add(score.propagation);
+    if (sum.steps.empty()) {
+      sum.steps = score.steps;
+    } else {
+      for (size_t n = 0; n < score.steps.size(); ++n) sum.steps[n].margin += score.steps[n].margin;
+    }
+    propagation.push_back(&score.propagation);
+  }
+  of_fold.value /= std::max<double>(1.0, static_cast<double>(propagation.size()));
+  of_fold.propagation = SummarizePropagation(propagation);
+  result->failures += of_fold.failures;
+  result->falls += of_fold.falls;
+  if (!of_fold.behaviour) return;
+  ++result->fits;
+  result->settling += of_fold.behaviour->settles;
+  result->harder_farther += of_fold.behaviour->harder_moves_farther;
+  for (const SettlingSimulation& d : of_fold.behaviour->simulations) {
+    result->slowest_to_settle = std::max(result->slowest_to_settle, d.speed);
+  }
+}
+
+// The summary of held-out recordings, each averaged over its folds.
+ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, const Predictor& predictor,
+                       Sums sums, const LabelKeys& group_by) {
+  std::vector<PendulumRecording> held;
+  std::vector<RecordingScore> means;
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    RecordingScore& mean = sums.scores[i];
+    if (sums.counts[i] == 0 && mean.failure.empty()) continue;  // never held out
+    if (sums.counts[i] > 0) {
+      mean.value /= sums.counts[i];
+      mean.propagation.Divide(sums.counts[i]);
+      for (StepPrediction& step : mean.steps) step.margin /= sums.counts[i];
+    }
+    if (!mean.failure.empty()) {
+      mean.value = ScoreHip(recordings[i], StaticBaseline(recordings[i]), predictor.observed).value;
+    }
+    held.push_back(recordings[i]);
+    means.push_back(mean);
+  }
+  PredictStepsWithoutThePerson(&means);
+  return Summarize(held, means, predictor.observed, predictor.bands, group_by);
 }
 
 }  // namespace
@@ -159,8 +255,8 @@ Predictor BandPredictor(const std::string& name, FitOptions options, const BandO
       prediction.scores.push_back(ScoreModel(model, recordings[i]));
       RecordingScore& score = prediction.scores.back();
       if (!score.failure.empty()) continue;
-      ScoreDraws(recordings[i],
-                 PathsAround(result, samples.value(), errors, recordings[i], bands.seed), &score);
+      ScoreDraws(recordings[i], PathsAround(result, samples, errors, recordings[i], bands.seed),
+                 &score);
     }
     return prediction;
   };
@@ -185,136 +281,6 @@ Predictor TemplatePredictor() { return {"template", ScoreTemplate}; }
 
 Predictor RidgePredictor() { return {"ridge", ScoreRidge}; }
 
-namespace {
-
-// Sums of each recording's scores over the folds that held it out, and their number.
-struct Sums {
-  std::vector<RecordingScore> scores;
-  std::vector<int> counts;
-
-  explicit Sums(size_t recordings) : scores(recordings), counts(recordings, 0) {}
-};
-
-void AddMargins(const std::vector<StepPrediction>& steps, std::vector<StepPrediction>* sum) {
-  if (sum->empty()) {
-    *sum = steps;
-    return;
-  }
-  for (size_t n = 0; n < std::min(steps.size(), sum->size()); ++n) {
-    (*sum)[n].margin += steps[n].margin;
-  }
-}
-
-// Each person's probabilities follow from the held-out margins of everybody else: margins of
-// recordings that were fitted err less, and a person's own steps are what is to be predicted.
-void PredictStepsWithoutThePerson(std::vector<RecordingScore>* scores) {
-  std::vector<StepOutcome> all;
-  std::set<std::string> people;
-  for (const RecordingScore& score : *scores) {
-    for (const StepPrediction& step : score.steps) {
-      all.push_back({step.margin, step.stepped, step.person});
-      people.insert(step.person);
-    }
-  }
-  for (const std::string& person : people) {
-    std::vector<StepOutcome> others;
-    std::copy_if(all.begin(), all.end(), std::back_inserter(others),
-                 [&](const StepOutcome& outcome) { return outcome.person != person; });
-    const std::optional<StepProbability> fitted = FitStepProbability(others);
-    for (RecordingScore& score : *scores) {
-      for (StepPrediction& step : score.steps) {
-        if (step.person == person && fitted) step.probability = fitted->At(step.margin);
-      }
-    }
-  }
-}
-
-// One fold's scores, added to the sums too.
-FoldScore ScoreOf(const Fold& fold, const FoldPrediction& prediction, Sums* sums) {
-  FoldScore result;
-  result.name = fold.name;
-  result.held_out = static_cast<int>(fold.held_out.size());
-  result.behaviour = prediction.behaviour;
-  int scored = 0;
-  std::vector<const PropagationScore*> propagation;
-  for (size_t k = 0; k < prediction.scores.size(); ++k) {
-    const RecordingScore& score = prediction.scores[k];
-    RecordingScore& sum = sums->scores[fold.held_out[k]];
-    sum.id = score.id;
-    sum.frames = score.frames;
-    sum.fell = sum.fell || score.fell;
-    result.falls += score.fell;
-    result.falls_harder += score.fell_harder;
-    if (!score.failure.empty()) {
-      ++result.failures;
-      sum.failure = score.failure;
-      continue;
-    }
-    ++scored;
-    ++sums->counts[fold.held_out[k]];
-    sum.value += score.value;
-    result.value += score.value;
-    sum.propagation.Add(score.propagation);
-    AddMargins(score.steps, &sum.steps);
-    propagation.push_back(&score.propagation);
-  }
-  result.value /= std::max(1, scored);
-  result.propagation = SummarizePropagation(propagation);
-  return result;
-}
-
-void AddFold(const FoldScore& fold, CrossValidation* result) {
-  if (fold.behaviour) {
-    ++result->fits;
-    result->settling += fold.behaviour->settles;
-    result->harder_farther += fold.behaviour->harder_moves_farther;
-    for (const SettlingSimulation& d : fold.behaviour->simulations) {
-      result->slowest_to_settle = std::max(result->slowest_to_settle, d.speed);
-    }
-  }
-  result->failures += fold.failures;
-  result->falls += fold.falls;
-  result->falls_harder += fold.falls_harder;
-  result->folds.push_back(fold);
-}
-
-std::vector<PredictedGroup> GroupsOf(const std::vector<Fold>& folds,
-                                     const std::vector<FoldPrediction>& predictions) {
-  std::vector<PredictedGroup> groups;
-  for (size_t f = 0; f < folds.size(); ++f) {
-    for (size_t k = 0; k < predictions[f].scores.size(); ++k) {
-      const RecordingScore& score = predictions[f].scores[k];
-      if (!score.predicted.empty()) groups.push_back({folds[f].held_out[k], score.predicted});
-    }
-  }
-  return groups;
-}
-
-// The summary of held-out recordings, each averaged over its folds.
-ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, const Predictor& predictor,
-                       Sums sums, const LabelKeys& group_by) {
-  std::vector<PendulumRecording> held;
-  std::vector<RecordingScore> means;
-  for (size_t i = 0; i < recordings.size(); ++i) {
-    RecordingScore& mean = sums.scores[i];
-    if (sums.counts[i] == 0 && mean.failure.empty()) continue;  // never held out
-    if (sums.counts[i] > 0) {
-      mean.value /= sums.counts[i];
-      mean.propagation.Divide(sums.counts[i]);
-      for (StepPrediction& step : mean.steps) step.margin /= sums.counts[i];
-    }
-    if (!mean.failure.empty()) {
-      mean.value = ScoreHip(recordings[i], StaticBaseline(recordings[i]), predictor.observed).value;
-    }
-    held.push_back(recordings[i]);
-    means.push_back(mean);
-  }
-  PredictStepsWithoutThePerson(&means);
-  return Summarize(held, means, predictor.observed, predictor.bands, group_by);
-}
-
-}  // namespace
-
 CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
                               const std::vector<Fold>& folds, const Predictor& predictor,
                               int num_threads, const JobProgress& progress,
@@ -330,12 +296,19 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
       progress);
   CrossValidation result;
   result.predictor = predictor.name;
-  Sums sums(recordings.size());
+  Sums sums{std::vector<RecordingScore>(recordings.size()), std::vector<int>(recordings.size(), 0)};
   for (size_t f = 0; f < folds.size(); ++f) {
-    AddFold(ScoreOf(folds[f], predictions[f], &sums), &result);
+    AddFold(folds[f], predictions[f], &sums, &result);
   }
   result.summary = SummaryOf(recordings, predictor, std::move(sums), group_by);
-  result.groups = CompareHips(recordings, bodies, GroupsOf(folds, predictions));
+  std::vector<PredictedGroup> groups;
+  for (size_t f = 0; f < folds.size(); ++f) {
+    for (size_t k = 0; k < predictions[f].scores.size(); ++k) {
+      const RecordingScore& score = predictions[f].scores[k];
+      if (!score.predicted.empty()) groups.push_back({folds[f].held_out[k], score.predicted});
+    }
+  }
+  result.groups = CompareHips(recordings, bodies, groups);
   return result;
 }
 

@@ -32,7 +32,7 @@ struct Predictor {
                                const std::vector<int>& train, const std::vector<int>& test)>
       fit_and_score;
   int observed = 0;    // frames that predictions see first; 0: none
-  bool bands = false;  // whether they come with bands
+  bool bands = false;  // true where predictions come with bands
 };
 
 struct FoldScore {
@@ -40,7 +40,6 @@ struct FoldScore {
   Metrics value = Metrics::Zero();  // means over the fold's recordings
   int held_out = 0;
   int failures = 0, falls = 0;
-  int falls_harder = 0;  // FallsWhenPushedHarder (evaluation.h)
   std::optional<Behaviour> behaviour;
   PropagationSummary propagation;
 };
@@ -51,9 +50,9 @@ struct CrossValidation {
   // Scores of each recording are averaged over the repeats that held it out.
   ScoreSummary summary;
   int failures = 0, falls = 0, falls_harder = 0;  // over all folds
-  // Over all folds whose model was fitted: how many, how many of them settle in every
-  // settling simulation, how many move a line on the farther the harder it is pushed, and the
-  // fastest anybody still is two seconds after a push.
+  // Number of folds whose model was fitted, of those that settle in every settling simulation, and
+  // of those that move a line farther the harder it is pushed; the fastest anybody still is two
+  // seconds after a push.
   int fits = 0, settling = 0, harder_farther = 0;
   double slowest_to_settle = 0.0;  // m/s
   // Metrics of all folds' recordings of several people together, if any.

@@ -1,11 +1,10 @@
-// ident: candidate pushes, their information and their table.
 #include "ident/validation/experiment_design.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
-#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/prediction/evaluation.h"
@@ -15,49 +14,17 @@
 #include "ident/uncertainty/covariance.h"
 #include "ident/uncertainty/model_verdict.h"
 #include "models/decompositions.h"
+#include "models/formation.h"
 
 namespace pushid {
 namespace {
 
 using Eigen::MatrixXd;
 
-constexpr double kDirections[] = {0.0, 45.0, 90.0, 180.0};  // degrees
-constexpr const char* kDirectionNames[] = {"forwards", "to the front left", "to the left",
-                                           "backwards"};
+const std::map<double, const char*> kDirections = {
+    {0.0, "forwards"}, {45.0, "to the front left"}, {90.0, "to the left"}, {180.0, "backwards"}};
 
-// J'J of a candidate, weighted as a recording of the fit.
-MatrixXd Information(const FitProblem& problem, const FitPoint& estimate,
-                     const PendulumRecording& candidate, const std::vector<int>& known) {
-  FitOptions options = problem.options();
-  for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
-  options.settling_weight = 0.0;
-  const std::vector<PendulumRecording> one = {candidate};
-  const FitProblem alone(one, options);
-  FitPoint point = alone.NominalPoint();
-  point.shared = estimate.shared;
-  const MatrixXd jacobian = EvaluateRows(alone, point).jacobian(Eigen::all, known);
-  return jacobian.transpose() * jacobian;
-}
-
-// T of the header, without the directions where noise is all there is.
-MatrixXd SpreadOf(const MatrixXd& clustered, const MatrixXd& naive, int groups) {
-  const Eigen::VectorXd error = clustered.diagonal().cwiseSqrt(), inverse = error.cwiseInverse();
-  const SymmetricEigen scaled = DecomposeSymmetric(
-      groups * (inverse.asDiagonal() * (clustered - naive) * inverse.asDiagonal()));
-  const MatrixXd root =
-      error.asDiagonal() * scaled.vectors * scaled.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  return root * root.transpose();
-}
-
-// The column of errors of a parameter, of which "all" has the last; one more where there is none.
-size_t IndexOf(const ExperimentDesign& design, const std::string& parameter) {
-  const std::vector<std::string>& names = design.parameters;
-  const auto at = std::find(names.begin(), names.end(), parameter);
-  return (at - names.begin()) + (at == names.end() && parameter != "all" ? 1 : 0);
-}
-
-}  // namespace
-
+// Pushes like the recordings' own; without a sensor too where most have none.
 std::vector<CandidatePush> DefaultCandidates(const std::vector<PendulumRecording>& recordings) {
   ValueRange strength, duration, mass;
   int measured = 0;  // more pushes that are than those that are not
@@ -70,26 +37,27 @@ std::vector<CandidatePush> DefaultCandidates(const std::vector<PendulumRecording
       }
     }
     strength.Add(peak);
-    duration.Add(r.scene.pushes.empty()
-                     ? 0.1
-                     : static_cast<double>(r.scene.pushes[0].force.size()) * r.scene.dt);
+    duration.Add(r.scene.pushes.empty() ? 0.1 : r.scene.pushes[0].force.size() * r.scene.dt);
     mass.Add(r.scene.people[r.pushed_person].body.mass);
   }
   std::vector<CandidatePush> candidates;
-  for (double direction : kDirections) {
+  const auto add = [&](double direction, double a, double height, double s, double kg) {
+    if (measured <= 0) candidates.push_back({direction, a, height, s, kg, false});
+    candidates.push_back({direction, a, height, measured > 0 ? s : 2.0 * s, kg, true});
+  };
+  for (const auto& [direction, name] : kDirections) {
     for (double a : {strength.lower, 0.5 * (strength.lower + strength.upper), strength.upper}) {
       for (double height : {0.8, 1.0}) {
         for (double s : {duration.lower, duration.upper}) {
-          for (double kg : {mass.lower, mass.upper}) {
-            if (measured <= 0) candidates.push_back({direction, a, height, s, kg, false});
-            candidates.push_back({direction, a, height, measured > 0 ? s : 2.0 * s, kg, true});
-          }
+          for (double kg : {mass.lower, mass.upper}) add(direction, a, height, s, kg);
         }
       }
     }
   }
   return candidates;
 }
+
+}  // namespace
 
 PendulumRecording MakeCandidate(const FitProblem& problem, const FitPoint& estimate,
                                 const CandidatePush& push) {
@@ -98,17 +66,17 @@ PendulumRecording MakeCandidate(const FitProblem& problem, const FitPoint& estim
   PendulumRecording candidate;
   candidate.id = "candidate";
   candidate.subject_ids = {"candidate"};
-  candidate.scene.dt = problem.recordings()[0].scene.dt;
-  candidate.scene.people.resize(1);
-  const Body& body = candidate.scene.people[0].body = {push.mass_kg, kReferenceRod, 0.0};
+  const Body body = {push.mass_kg, kReferenceRod, 0.0};
+  candidate.scene = FormationScene({{0.0, 0.0}}, body, problem.recordings()[0].scene.dt);
   // A whole half-sine where it is measured, its rising half where a tail goes on with it.
   const int rows = std::max(2, static_cast<int>(std::lround(push.duration_s / candidate.scene.dt)));
   const double angle = push.direction_deg * M_PI / 180.0, span = push.sensor ? M_PI : 0.5 * M_PI;
+  const Vector3<double> along(std::cos(angle), std::sin(angle), 0.0);
   std::vector<Vector4<double>> force;
   for (int i = 0; i < rows; ++i) {
     const double size = push.acceleration * body.mass * std::sin(span * (i + 0.5) / rows);
-    const Vector3<double> f(size * std::cos(angle), size * std::sin(angle), 0.0);
-    force.push_back(GeneralizedForce<double>(body, Vector4<double>::Zero(), f, push.height));
+    force.push_back(GeneralizedForce<double>(body, Vector4<double>::Zero(),
+                                             Vector3<double>(size * along), push.height));
   }
   candidate.scene.pushes = {
       MakeScenePush(0, 0, push.sensor ? PushKind::kExternal : PushKind::kNet, force)};
@@ -127,17 +95,15 @@ PendulumRecording MakeCandidate(const FitProblem& problem, const FitPoint& estim
 Result<ExperimentDesign> DesignExperiments(const FitProblem& problem, const FitPoint& estimate,
                                            const Uncertainty& uncertainty,
                                            const Covariance& by_recording,
-                                           const std::vector<CandidatePush>& candidates) {
+                                           std::vector<CandidatePush> candidates) {
   ExperimentDesign design;
   std::vector<int> known;
   for (int i = 0; i < problem.map().num_shared(); ++i) {
     const Estimate& e = uncertainty.estimates[i];
-    using Status = EstimateStatus;
-    if (e.status == Status::kUnidentifiable || e.status == Status::kAtBound) continue;
+    const bool bound = e.status == EstimateStatus::kAtBound;
+    if (bound || e.status == EstimateStatus::kUnidentifiable) continue;
     known.push_back(i);
-    design.parameters.push_back(e.name);
-    design.units.push_back(e.unit);
-    design.standard_error.push_back(e.standard_error);
+    design.parameters.push_back(e);
   }
   const int size = static_cast<int>(known.size());
   const int groups = static_cast<int>(problem.recordings().size());
@@ -146,16 +112,31 @@ Result<ExperimentDesign> DesignExperiments(const FitProblem& problem, const FitP
                  ") than free parameters (" + std::to_string(size) + ")"};
   }
   const MatrixXd now = by_recording.scatter.Covariance()(known, known), present = Inverse(now);
-  const MatrixXd spread = SpreadOf(now, by_recording.naive(known, known), groups);
+  // T without the directions where noise is all there is, in units of the errors.
+  const Eigen::VectorXd error = now.diagonal().cwiseSqrt(), inverse = error.cwiseInverse();
+  const SymmetricEigen scaled =
+      DecomposeSymmetric(groups * (inverse.asDiagonal() * (now - by_recording.naive(known, known)) *
+                                   inverse.asDiagonal()));
+  const MatrixXd root =
+      error.asDiagonal() * scaled.vectors * scaled.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const MatrixXd spread = root * root.transpose();
+  if (candidates.empty()) candidates = DefaultCandidates(problem.recordings());
+  FitOptions options = problem.options();
+  for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
+  options.settling_weight = 0.0;
   for (const CandidatePush& push : candidates) {
-    const PendulumRecording candidate = MakeCandidate(problem, estimate, push);
-    if (candidate.states.empty()) continue;
-    const MatrixXd information = Information(problem, estimate, candidate, known) /
-                                 (by_recording.sigma * by_recording.sigma);
+    const std::vector<PendulumRecording> candidate = {MakeCandidate(problem, estimate, push)};
+    if (candidate[0].states.empty()) continue;
+    // J'J / sigma^2, weighted as a recording of the fit.
+    const FitProblem alone(candidate, options);
+    FitPoint point = alone.NominalPoint();
+    point.shared = estimate.shared;
+    const MatrixXd jacobian = EvaluateRows(alone, point).jacobian(Eigen::all, known);
+    MatrixXd information = jacobian.transpose() * jacobian;
+    information /= by_recording.sigma * by_recording.sigma;
     // (I^-1 + T)^-1 = (1 + I T)^-1 I, also where I is singular.
-    const MatrixXd told =
-        SolveGeneral(MatrixXd::Identity(size, size) + information * spread, information);
-    const MatrixXd then = Inverse(present + told);
+    const MatrixXd then = Inverse(
+        present + SolveGeneral(MatrixXd::Identity(size, size) + information * spread, information));
     DesignRow row{push, {}};
     for (int i = 0; i < size; ++i) row.error_ratio.push_back(std::sqrt(then(i, i) / now(i, i)));
     row.error_ratio.push_back(std::pow(then.determinant() / now.determinant(), 0.5 / size));
@@ -172,56 +153,47 @@ Result<ExperimentDesign> DesignExperiments(const std::vector<PendulumRecording>&
   const ScoredFit fit = ScoreAt(problem, *estimate);
   return DesignExperiments(
       problem, *estimate, result.uncertainty,
-      ComputeCovariance(fit.score, fit.unit, {ClusterByRecording(fit.score), {}, 0, false}),
-      DefaultCandidates(recordings));
+      ComputeCovariance(fit.score, fit.unit, {ClusterByRecording(fit.score), {}, 0, false}));
 }
 
-Result<std::vector<DesignRow>> RankedRows(const ExperimentDesign& design,
-                                          const std::string& parameter) {
-  const size_t index = IndexOf(design, parameter);
-  if (index > design.parameters.size()) {
-    return Error{"there is no error of '" + parameter + "' to reduce; choose from all, " +
-                 Joined(design.parameters, ", ")};
+Result<std::string> DesignText(const std::string& parameter, Result<ExperimentDesign>* result) {
+  if (!result->ok()) return "no further push is proposed: " + result->error().message + "\n";
+  auto& [parameters, rows] = result->value();
+  const size_t all = parameters.size();  // the column of their mean
+  size_t own = 0;
+  std::string known = "all";
+  for (; own < all && parameters[own].name != parameter; ++own)
+    known += ", " + parameters[own].name;
+  if (own == all && parameter != "all") {
+    return Error{"there is no error of '" + parameter + "' to reduce; choose from " + known};
   }
-  std::vector<DesignRow> rows = design.rows;
-  std::stable_sort(rows.begin(), rows.end(), [index](const DesignRow& a, const DesignRow& b) {
-    return a.error_ratio[index] < b.error_ratio[index];
+  std::stable_sort(rows.begin(), rows.end(), [own](const DesignRow& a, const DesignRow& b) {
+    return a.error_ratio[own] < b.error_ratio[own];
   });
-  return rows;
-}
-
-Result<std::string> DesignText(const Result<ExperimentDesign>& result,
-                               const std::string& parameter) {
-  constexpr size_t kBest = 10;
-  if (!result.ok()) return "no further push is proposed: " + result.error().message + "\n";
-  const ExperimentDesign& design = result.value();
-  const Result<std::vector<DesignRow>> ranked = RankedRows(design, parameter);
-  if (!ranked.ok()) return ranked.error();
-  const size_t index = IndexOf(design, parameter), all = design.parameters.size();
   std::vector<std::string> header = {"one more push", "m/s^2", "height", "s", "kg", "sensor"};
-  if (index != all) header.push_back("error of " + parameter);
+  if (own != all) header.push_back("error of " + parameter);
   header.push_back("mean of all errors");
   TextTable table = TextTable::OfNumbers(header);
-  const std::vector<DesignRow>& rows = ranked.value();
   for (size_t i = 0; i < rows.size(); ++i) {
-    if (i == kBest) table.AddGap(), i = rows.size() - 1;  // and the last
+    if (i == 10) table.Add(std::vector<std::string>()), i = rows.size() - 1;
     const CandidatePush& push = rows[i].push;
-    const auto direction =
-        std::find(std::begin(kDirections), std::end(kDirections), push.direction_deg) - kDirections;
-    const auto change = [](double ratio) { return Rounded(100.0 * (ratio - 1.0), 2) + " %"; };
-    std::vector<std::string> cells = {kDirectionNames[direction], Rounded(push.acceleration, 3),
-                                      Rounded(push.height, 2),    Rounded(push.duration_s, 2),
-                                      Rounded(push.mass_kg, 3),   push.sensor ? "yes" : "no"};
-    if (index != all) cells.push_back(change(rows[i].error_ratio[index]));
-    cells.push_back(change(rows[i].error_ratio[all]));
+    std::vector<std::string> cells = {kDirections.at(push.direction_deg),
+                                      Rounded(push.acceleration, 3),
+                                      Rounded(push.height, 2),
+                                      Rounded(push.duration_s, 2),
+                                      Rounded(push.mass_kg, 3),
+                                      push.sensor ? "yes" : "no"};
+    for (size_t column : own == all ? std::vector{all} : std::vector{own, all}) {
+      cells.push_back(Rounded(100.0 * (rows[i].error_ratio[column] - 1.0), 2) + " %");
+    }
     table.Add(cells);
   }
-  const std::string text =
-      "effect of one more recording, best first; last row: the least useful of " +
-      std::to_string(rows.size()) + " candidates\n" + table.ToString();
-  if (index == all) return text;
-  return text + "now, by the data alone: " + parameter + " +- " +
-         Rounded(design.standard_error[index], 3) + " " + design.units[index] + "\n";
+  return "effect of one more recording, best first; last row: the least useful of " +
+         std::to_string(rows.size()) + " candidates\n" + table.ToString() +
+         (own == all
+              ? ""
+              : "now, by the data alone: " + parameter + " +- " +
+                    Rounded(parameters[own].standard_error, 3) + " " + parameters[own].unit + "\n");
 }
 
 }  // namespace pushid

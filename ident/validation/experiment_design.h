@@ -1,12 +1,11 @@
-// ident: which further push, of a lighter or a heavier person, with a force sensor or without,
-// lowers the standard errors of a fit most.
+// ident: which further push would lower the standard errors of a fit most.
 //
 // Recordings deviate from the shared parameters by the spread T, and are seen through noise. With V
 // the covariance clustered by the G recordings, V_naive the one that takes all errors for noise,
 // and I_c = J_c'J_c / sigma^2 of a candidate, rolled out at the estimate:
 //   V' = (V^-1 + (I_c^-1 + T)^-1)^-1,   T = G (V - V_naive), its positive part
-// Rejected: det(J'J + J_c'J_c) alone, which believes that people are alike and promises far too
-// much of one recording. Errors of parameters on a bound, and null directions, are left out.
+// Rejected: det(J'J + J_c'J_c), which takes people for alike and promises far too much of one
+// recording. Errors of parameters on a bound, and null directions, are left out.
 #pragma once
 
 #include <string>
@@ -36,35 +35,26 @@ struct DesignRow {
 };
 
 struct ExperimentDesign {
-  std::vector<std::string> parameters, units;
-  std::vector<double> standard_error;  // now, by the data alone
-  std::vector<DesignRow> rows;         // candidates that fall are left out
+  std::vector<Estimate> parameters;  // with their standard errors now, by the data alone
+  std::vector<DesignRow> rows;       // candidates that fall are left out
 };
 
-// As strong, long and heavy as the recordings' own; without a sensor too where most have none.
-std::vector<CandidatePush> DefaultCandidates(const std::vector<PendulumRecording>& recordings);
-
-// The recording a candidate would be, as the model expects it; without states where it fails or
-// falls.
+// The recording that the model expects; without states where the person falls.
 PendulumRecording MakeCandidate(const FitProblem& problem, const FitPoint& estimate,
                                 const CandidatePush& push);
 
-// by_recording: the covariance at the estimate by clusters of one recording each. Errors: too few
-// recordings, or others than were fitted.
+// by_recording: the covariance clustered by recording. candidates: none for the default ones, as
+// strong, long and heavy as the recordings' own. Error: too few recordings.
 Result<ExperimentDesign> DesignExperiments(const FitProblem& problem, const FitPoint& estimate,
                                            const Uncertainty& uncertainty,
                                            const Covariance& by_recording,
-                                           const std::vector<CandidatePush>& candidates);
-// With the default candidates, of a finished fit to these recordings.
+                                           std::vector<CandidatePush> candidates = {});
+// Default candidates for a finished fit. Error: other recordings than were fitted.
 Result<ExperimentDesign> DesignExperiments(const std::vector<PendulumRecording>& recordings,
                                            const FitResult& result);
 
-// By what they bring to a parameter, or to all together ("all"), best first.
-Result<std::vector<DesignRow>> RankedRows(const ExperimentDesign& design,
-                                          const std::string& parameter);
-// A table of the best ten and, after a gap, the least useful one, with the present error; or why
-// there is no design.
-Result<std::string> DesignText(const Result<ExperimentDesign>& design,
-                               const std::string& parameter);
+// Sorts the rows by what they bring to a parameter, or to all together ("all"), best first: a table
+// of the best ten and the least useful one, or why there is no design. Error: no such parameter.
+Result<std::string> DesignText(const std::string& parameter, Result<ExperimentDesign>* design);
 
 }  // namespace pushid

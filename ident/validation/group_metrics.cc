@@ -1,4 +1,3 @@
-// ident: groups compared.
 #include "ident/validation/group_metrics.h"
 
 #include <algorithm>
@@ -33,7 +32,7 @@ std::vector<Value> AtWordRate(const std::vector<Value>& values, const GroupMotio
 
 constexpr int kNever = -1;
 
-// Everybody's states that count.
+// All people's states that count.
 std::vector<Symbols> StatesOf(const std::vector<GroupMotion>& groups, const StateFunction& states) {
   std::vector<Symbols> all;
   for (const GroupMotion& group : groups) {
@@ -44,7 +43,7 @@ std::vector<Symbols> StatesOf(const std::vector<GroupMotion>& groups, const Stat
   return all;
 }
 
-// Whether a begins before b: people who never move come last.
+// True where a begins before b: people who never move come last.
 bool Before(int a, int b) { return a != kNever && (b == kNever || a < b); }
 
 int FirstOf(const std::vector<int>& onsets) {
@@ -64,21 +63,6 @@ std::string Cell(const std::optional<double>& value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3f", *value);
   return text;
-}
-
-// First poses carried by hips.
-std::vector<BodyMotion> Carried(const std::vector<BodyMotion>& recorded, const HipPaths& hips) {
-  std::vector<BodyMotion> carried;
-  for (size_t n = 0; n < recorded.size(); ++n) {
-    const Pose& first = recorded[n].front();
-    BodyMotion motion;
-    for (const Vector3<double>& hip : hips[n]) {
-      const Eigen::Vector3d move = hip - first.col(kBodyHip);
-      motion.push_back(first.colwise() + move);
-    }
-    carried.push_back(std::move(motion));
-  }
-  return carried;
 }
 
 }  // namespace
@@ -122,7 +106,8 @@ std::vector<BodyMotion> CountedMotions(const std::vector<GroupMotion>& groups) {
 }
 
 SocialMetrics CompareStates(const std::vector<GroupMotion>& recorded,
-                            const std::vector<GroupMotion>& motions, const StateFunction& states) {
+                            const std::vector<GroupMotion>& motions) {
+  const StateFunction states = SocialStateFunction();
   const std::vector<Symbols> of_recorded = StatesOf(recorded, states);
   const std::vector<Symbols> of_motions = StatesOf(motions, states);
   const auto distance = [&](Transitions which) {
@@ -240,13 +225,7 @@ TextTable GroupMetricsTable(const std::vector<GroupMetricsRow>& rows) {
 }
 
 std::string GroupMetricsText(const std::vector<GroupMetricsRow>& rows) {
-  if (rows.empty()) return "";
-  return GroupMetricsTable(rows).ToString() + GroupMetricsLegend() + "\n";
-}
-
-const char* GroupMetricsLegend() {
-  return "SSCP, changes (0: the same) and NDMS (1: the same) measure how people move and how often "
-         "they step, but not whether the right person does so in time; onsets measure only that.";
+  return GroupMetricsTable(rows).ToString() + kGroupMetricsLegend + "\n";
 }
 
 std::optional<GroupMetrics> CompareHips(const std::vector<PendulumRecording>& recordings,
@@ -265,7 +244,15 @@ std::optional<GroupMetrics> CompareHips(const std::vector<PendulumRecording>& re
     const std::vector<BodyMotion>& people = bodies[group.recording];
     // Each recording is compared with once, however often it was predicted.
     if (seen.insert(group.recording).second) recorded.push_back({people, dt});
-    motions.push_back({Carried(people, group.hips), dt});
+    GroupMotion& carried = motions.emplace_back(GroupMotion{{}, dt});  // first poses, by the hips
+    for (size_t n = 0; n < people.size(); ++n) {
+      const Pose& first = people[n].front();
+      BodyMotion& motion = carried.people.emplace_back();
+      for (const Vector3<double>& hip : group.hips[n]) {
+        const Eigen::Vector3d move = hip - first.col(kBodyHip);
+        motion.push_back(first.colwise() + move);
+      }
+    }
   }
   if (bodies.empty()) return metrics;
   metrics.social = CompareStates(recorded, motions);

@@ -55,7 +55,7 @@ std::vector<Symbols> StatesOfPeople(const GroupMotion& group, const StateFunctio
 // The states that count, preceded by the first of them again, as at frame 0.
 Symbols Counted(const GroupMotion& group, const Symbols& symbols);
 
-// Everybody's frames whose steps count.
+// All people's frames whose steps count.
 std::vector<BodyMotion> CountedMotions(const std::vector<GroupMotion>& groups);
 
 // Measures of what people do, for any number of groups against any others; all of them are
@@ -64,8 +64,7 @@ struct SocialMetrics {
   std::optional<double> sscp, sscp_changes, ndms;
 };
 SocialMetrics CompareStates(const std::vector<GroupMotion>& recorded,
-                            const std::vector<GroupMotion>& motions,
-                            const StateFunction& states = SocialStateFunction());
+                            const std::vector<GroupMotion>& motions);
 std::optional<double> CompareWords(const std::vector<GroupMotion>& recorded,
                                    const std::vector<GroupMotion>& motions);
 
@@ -109,7 +108,9 @@ struct GroupMetricsRow {
 TextTable GroupMetricsTable(const std::vector<GroupMetricsRow>& rows);
 // The table as text, with what the measures can see and what they cannot.
 std::string GroupMetricsText(const std::vector<GroupMetricsRow>& rows);
-const char* GroupMetricsLegend();
+inline constexpr char kGroupMetricsLegend[] =
+    "SSCP, changes (0: the same) and NDMS (1: the same) measure how people move and how often "
+    "they step, but not whether the right person does so in time; onsets measure only that.";
 
 // Metrics of groups whose hips alone are predicted, as pendulums do.
 //

@@ -1,35 +1,115 @@
-// ident: scores in words and in tables. Which metrics there are depends on what was asked
-// of the predictor.
 #include "ident/validation/scores_report.h"
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
+#include "ident/model/model_json.h"
+#include "ident/parameters/json_archive.h"
 #include "ident/prediction/predicted_steps.h"
-#include "ident/validation/scores_json.h"
 
 namespace pushid {
+
+void Fields(JsonArchive& a, StepFifth& f) { PUSHID_FIELDS(a, f, tracks, predicted, observed); }
+
+void Fields(JsonArchive& a, StepScore& s) {
+  PUSHID_FIELDS(a, s, tracks, stepped, people, brier, brier_error, auc, auc_error, fifths);
+  if (s.lift_off.people == 0) return;
+  a.Group("lift_off", [&](auto& g) {
+    g("people", s.lift_off.people);
+    g("median_error_s", s.lift_off.median);
+    g("mean_absolute_error_s", s.lift_off.mean_absolute);
+    g("landed", s.lift_off.landed);
+    g("place_error_m", s.lift_off.place);
+  });
+}
+
+void Fields(JsonArchive& a, StepPrediction& s) {
+  a("margin_m", s.margin);
+  PUSHID_FIELDS(a, s, probability, stepped);
+  if (!s.timing) return;
+  // All three are null where the model has the person stand.
+  std::optional<Eigen::Vector2d> travel;
+  if (s.timing->lift_off) travel = s.timing->travel;
+  a.OrNull("lift_off_s", s.timing->lift_off);
+  a.OrNull("landing_s", s.timing->landing);
+  a.OrNull("travel_m", travel);
+}
+
+void Fields(JsonArchive& a, PropagationMean& m) {
+  a("value", m.value);
+  a("standard_error", m.error);
+  a("of", m.weight);
+}
+
+void Fields(JsonArchive& a, PropagationSummary& s) {
+  a("recordings", s.recordings);
+  a("onset_distance_m", kOnsetDistance);
+  PUSHID_FIELDS(a, s, movers, bystanders, missed_movers, false_movers);
+  for (int i = 0; i < kNumPropagationFigures; ++i) {
+    const PropagationMean& mean = s.figures[i];
+    a.OrNull(Info(static_cast<PropagationFigure>(i)).key,
+             mean.known() ? std::optional(mean) : std::nullopt);
+  }
+  a.OrNull("speed_measured_m_per_s", Speed(s.figures[kSlownessMeasured]));
+  a.OrNull("speed_predicted_m_per_s", Speed(s.figures[kSlownessPredicted]));
+}
+
+void Fields(JsonArchive& a, PersonPropagation& p) {
+  a("rank", p.rank);
+  a("distance_m", p.distance);
+  a("onset_measured_frame", p.onset_measured);
+  a("onset_predicted_frame", p.onset_predicted);
+  a("peak_momentum_measured_N_s", p.peak_momentum_measured);
+  a("peak_momentum_predicted_N_s", p.peak_momentum_predicted);
+  a("impulse_passed_on_N_s", p.impulse_on);
+  a("contact_work_J", p.contact_work);
+}
+
 namespace {
+
+using Json = nlohmann::ordered_json;
+
+// "single_X05_00 (fell at 0.4 s)" of each recording without a prediction.
+std::vector<std::string> FailedRecordings(const ScoreSummary& summary) {
+  std::vector<std::string> failed;
+  for (const RecordingScore& r : summary.recordings) {
+    if (!r.failure.empty()) failed.push_back(r.id + " (" + r.failure + ")");
+  }
+  return failed;
+}
+
+// The mean over all recordings, with the error of standing still where there is no prediction.
+Metrics MeanWithStatic(const ScoreSummary& summary) {
+  Metrics sum = Metrics::Zero();
+  for (const RecordingScore& r : summary.recordings) sum += r.value;
+  return sum / std::max<double>(1.0, static_cast<double>(summary.recordings.size()));
+}
+
+void AddMetrics(const Metrics& values, const MetricList& metrics, Json* json) {
+  for (MetricId m : metrics) (*json)[kMetrics[m].Key()] = NumberJson(values[m]);
+}
+
+Json MeanJson(const MeanScore& mean, const MetricList& metrics, bool with_clusters) {
+  Json json;
+  AddMetrics(mean.value, metrics, &json);
+  for (MetricId m : metrics) {
+    if (kMetrics[m].with_error) json[kMetrics[m].ErrorKey()] = NumberJson(mean.error[m]);
+  }
+  json["recordings"] = mean.recordings;
+  if (!with_clusters) return json;
+  json["clustered_by"] = NameOf(mean.clustered_by);
+  json["clusters"] = mean.clusters;
+  return json;
+}
 
 // A single recording has no error.
 std::string ScoreText(double value, double error, const MeanScore& mean) {
   if (mean.recordings == 0) return "-";
   return Rounded(value, 3) + (mean.recordings > 1 ? " +- " + Rounded(error, 2) : "");
-}
-
-// The mean of a group; none where a baseline failed in all of it.
-MeanScore MeanOfGroup(const std::map<std::string, MeanScore>& groups, const std::string& name) {
-  const auto found = groups.find(name);
-  return found == groups.end() ? MeanScore() : found->second;
-}
-
-// The word before the name of a group.
-std::string GroupTitle(const std::string& key, const ScoreSummary& summary) {
-  if (key == kMagnitudeLabel) return "strength ";
-  const bool one_of_several = key == kSubjectUnit && summary.propagation.recordings > 0;
-  return (one_of_several ? "pushed person" : key) + " ";
 }
 
 std::vector<std::string> MeanCells(const MeanScore& mean, const MetricList& shown) {
@@ -64,8 +144,11 @@ std::string MeanText(const MeanScore& mean, const MetricList& shown) {
   return Joined(MeanCells(mean, shown), " / ");
 }
 
-void Append(const std::vector<std::string>& cells, std::vector<std::string>* row) {
-  row->insert(row->end(), cells.begin(), cells.end());
+// A row of a table out of its parts.
+std::vector<std::string> Row(std::initializer_list<std::vector<std::string>> parts) {
+  std::vector<std::string> row;
+  for (const auto& cells : parts) row.insert(row.end(), cells.begin(), cells.end());
+  return row;
 }
 
 std::string ErrorsText(const ScoreSummary& summary) {
@@ -110,14 +193,18 @@ void AddGroups(const std::vector<const ScoreSummary*>& summaries, const MetricLi
                bool errors, const std::string& only, TextTable* table) {
   for (const auto& [key, groups] : summaries[0]->by) {
     if (groups.size() < 2 || (!only.empty() && key != only)) continue;
+    const bool one_of_several = key == kSubjectUnit && summaries[0]->propagation.recordings > 0;
+    const std::string title = key == kMagnitudeLabel ? "strength"
+                              : one_of_several       ? "pushed person"
+                                                     : key;
     for (const auto& group : groups) {
       std::vector<MeanScore> means;
-      for (const ScoreSummary* one : summaries) {
-        means.push_back(MeanOfGroup(one->by.at(key), group.first));
+      for (const ScoreSummary* one : summaries) {  // a baseline may fail in all of a group
+        const auto found = one->by.at(key).find(group.first);
+        means.push_back(found == one->by.at(key).end() ? MeanScore() : found->second);
       }
-      const std::string name = GroupTitle(key, *summaries[0]) + group.first;
-      table->Add(
-          MeansRow(name + " (" + std::to_string(means[0].recordings) + ")", means, shown, errors));
+      const std::string number = std::to_string(means[0].recordings);
+      table->Add(MeansRow(title + " " + group.first + " (" + number + ")", means, shown, errors));
     }
   }
 }
@@ -125,6 +212,12 @@ void AddGroups(const std::vector<const ScoreSummary*>& summaries, const MetricLi
 std::string FigureText(const PropagationMean& mean) {
   if (!mean.known()) return "-";
   return WithError(mean.value, mean.error);
+}
+
+// "3.2 +- 0.3", "-" where nothing is known, "undefined" where all begin at once.
+std::string SpeedText(const PropagationMean& slowness) {
+  const std::optional<PropagationMean> speed = Speed(slowness);
+  return speed ? FigureText(*speed) : (slowness.known() ? "undefined" : "-");
 }
 
 std::string FailuresText(const std::string& name, const ScoreSummary& summary,
@@ -175,22 +268,18 @@ TextTable MeansTable(const Evaluation& evaluation, bool all) {
 
 TextTable RecordingsTable(const Evaluation& evaluation) {
   const MetricList shown = TableMetrics(evaluation.model.observed);
-  std::vector<std::string> header = {"recording", ">frames"};
-  Append(Titles(shown), &header);
-  for (const BaselineSummary& baseline : evaluation.baselines) {
-    header.push_back(">" + baseline.name);
-  }
-  header.push_back("");
-  TextTable table(header);
+  std::vector<std::string> baselines;
+  for (const BaselineSummary& one : evaluation.baselines) baselines.push_back(">" + one.name);
+  TextTable table(Row({{"recording", ">frames"}, Titles(shown), baselines, {""}}));
   for (size_t i = 0; i < evaluation.model.recordings.size(); ++i) {
     const RecordingScore& r = evaluation.model.recordings[i];
-    std::vector<std::string> row = {r.id, std::to_string(r.frames)};
-    Append(PlainCells(r.value, shown, r.failure.empty()), &row);
-    for (const BaselineSummary& baseline : evaluation.baselines) {
-      row.push_back(PlainCells(baseline.summary.recordings[i].value, shown)[0]);
+    for (size_t k = 0; k < baselines.size(); ++k) {
+      baselines[k] = PlainCells(evaluation.baselines[k].summary.recordings[i].value, shown)[0];
     }
-    row.push_back(r.failure);
-    table.Add(row);
+    table.Add(Row({{r.id, std::to_string(r.frames)},
+                   PlainCells(r.value, shown, r.failure.empty()),
+                   baselines,
+                   {r.failure}}));
   }
   return table;
 }
@@ -212,7 +301,158 @@ std::string RatioText(const Evaluation& evaluation) {
          best->name + ")" + (ratio < 1.0 ? "." : ": do not predict with it.");
 }
 
+double HalfInterval95(const PairedDifference& d) {
+  return StudentQuantile95(d.clusters - 1.0) * d.error[kHipAde];
+}
+
+// One honest sentence on two configurations: they differ where the 95 % interval of the difference
+// excludes zero.
+std::string ConclusionText(const PairedDifference& d) {
+  if (d.clusters < 2) return d.b + " cannot be compared with " + d.a + ".";
+  const Metric& metric = kMetrics[kHipAde];
+  const double change = d.value[kHipAde], error = d.error[kHipAde];
+  const std::string by = Rounded(std::abs(change), 2) + " +- " + Rounded(error, 2) + " " +
+                         metric.unit + " of " + metric.name;
+  const double half = HalfInterval95(d);
+  const std::string interval = "95 % interval +- " + Rounded(half, 2) + " " + metric.unit + ": " +
+                               ClustersText(d.clustered_by, d.clusters) + ", Student's t with " +
+                               std::to_string(d.clusters - 1) + " degree" +
+                               (d.clusters > 2 ? "s" : "") + " of freedom";
+  if (std::abs(change) <= half) {
+    return d.b + " is not distinguishable from " + d.a + " (" + by + "; " + interval + ").";
+  }
+  return d.b + " predicts " + (change < 0.0 ? "better" : "worse") + " than " + d.a + " by " + by +
+         " (" + interval + ").";
+}
+
 }  // namespace
+
+Json ScoreJson(const Score& score, const MetricList& metrics) {
+  Json json = {{"id", score.id}, {"frames", score.frames}};
+  if (score.failure.empty()) {
+    AddMetrics(score.value, metrics, &json);
+  } else {
+    json["failure"] = score.failure;
+  }
+  return json;
+}
+
+void AddMeans(const ScoreMeans& means, const MetricList& metrics, bool with_clusters, Json* json) {
+  (*json)["mean"] = MeanJson(means.mean, metrics, with_clusters);
+  (*json)["frame_weighted"] = MeanJson(means.frame_weighted, metrics, with_clusters);
+  for (const auto& [key, groups] : means.by) {
+    Json& by = (*json)["by_" + key] = Json::object();
+    for (const auto& [name, mean] : groups) by[name] = MeanJson(mean, metrics, with_clusters);
+  }
+  if (!means.without_label.empty()) (*json)["without_label"] = means.without_label;
+}
+
+Json ToJson(const ScoreSummary& s, bool with_recordings) {
+  Json json;
+  const MetricList metrics = MetricsOf(s.observed, s.bands);
+  if (s.observed > 0) json["observed"] = s.observed;
+  if (with_recordings) json["recordings"] = Json::array();
+  for (size_t i = 0; with_recordings && i < s.recordings.size(); ++i) {
+    const RecordingScore& r = s.recordings[i];
+    Json row = ScoreJson(r, metrics);
+    row["fell"] = r.fell;
+    if (!r.propagation.people.empty()) row["people"] = JsonOf(r.propagation.people);
+    if (!r.steps.empty()) row["predicted_steps"] = JsonOf(r.steps);
+    json["recordings"].push_back(std::move(row));
+  }
+  AddMeans(s, metrics, true, &json);
+  if (!FailedRecordings(s).empty()) {
+    Json& with_static = json["mean_with_failures_as_static"] = Json::object();
+    AddMetrics(MeanWithStatic(s), TableMetrics(s.observed), &with_static);
+  }
+  if (s.propagation.recordings > 0) {
+    Json& propagation = json["propagation"] = JsonOf(s.propagation);
+    if (!s.propagation_by_setting.empty()) {
+      propagation["by_setting"] = JsonOf(s.propagation_by_setting);
+    }
+  }
+  if (s.steps.known()) json["who_steps"] = JsonOf(s.steps);
+  return json;
+}
+
+Json ToJson(const Evaluation& evaluation) {
+  Json json = ToJson(evaluation.model, true);
+  for (const BaselineSummary& baseline : evaluation.baselines) {
+    json["baselines"][baseline.key] = ToJson(baseline.summary, false);
+  }
+  return json;
+}
+
+Json ToJson(const CrossValidation& v) {
+  Json json = {{"name", v.predictor}};
+  json.update(ToJson(v.summary, true));
+  json["failures"] = v.failures;
+  json["falls"] = v.falls;
+  json["falls_when_pushed_harder"] = v.falls_harder;
+  if (v.groups) json["group_metrics"] = ToJson(*v.groups);
+  if (v.fits > 0) {
+    json["fits"] = v.fits;
+    json["fits_that_settle"] = v.settling;
+    json["fits_that_move_lines_farther_the_harder"] = v.harder_farther;
+    json["slowest_to_settle_m_s"] = NumberJson(v.slowest_to_settle);
+  }
+  json["folds"] = Json::array();
+  for (const FoldScore& fold : v.folds) {
+    Json row = {{"name", fold.name}, {"held_out", fold.held_out}};
+    AddMetrics(fold.value, MetricsOf(v.summary.observed, v.summary.bands), &row);
+    row["failures"] = fold.failures;
+    row["falls"] = fold.falls;
+    if (fold.behaviour) row["behaviour"] = ToJson(*fold.behaviour);
+    if (fold.propagation.recordings > 0) row["propagation"] = JsonOf(fold.propagation);
+    json["folds"].push_back(std::move(row));
+  }
+  return json;
+}
+
+Json ToJson(const PairedDifference& d) {
+  Json json = {{"from", d.a}, {"to", d.b}, {"recordings", d.recordings}};
+  for (MetricId m : MetricsOf(d.observed, false)) {
+    json[kMetrics[m].Key()] = NumberJson(d.value[m]);
+    json[kMetrics[m].ErrorKey()] = NumberJson(d.error[m]);
+  }
+  json["clustered_by"] = NameOf(d.clustered_by);
+  json["clusters"] = d.clusters;
+  return json;
+}
+
+Result<Metrics> MeanMetrics(const Json& json, const MetricList& metrics, const std::string& file) {
+  try {
+    Metrics values = Metrics::Zero();
+    for (MetricId m : metrics) values[m] = NumberFrom(json.at("mean").at(kMetrics[m].Key()));
+    return values;
+  } catch (const std::exception& error) {
+    return Error{
+        "this is not a file of scores from pushid-evaluate --json_out, or it is damaged: " +
+            ReasonOf(error) + "; evaluate again",
+        file};
+  }
+}
+
+Json MeanOfSamples(const std::vector<Json>& samples) {
+  Json mean = samples.front();
+  if (mean.is_structured()) {
+    for (size_t i = 0; i < mean.size(); ++i) {
+      const auto at = static_cast<std::ptrdiff_t>(i);
+      std::vector<Json> parts;
+      for (const Json& sample : samples) parts.push_back(*std::next(sample.begin(), at));
+      *std::next(mean.begin(), at) = MeanOfSamples(parts);
+    }
+    return mean;
+  }
+  double sum = 0.0;
+  for (const Json& sample : samples) {
+    if (sample.is_null()) return nullptr;
+    if (sample.is_number()) sum += sample.get<double>();
+  }
+  const bool differ = std::any_of(samples.begin(), samples.end(),
+                                  [&mean](const Json& sample) { return sample != mean; });
+  return mean.is_number() && differ ? Json(sum / static_cast<double>(samples.size())) : mean;
+}
 
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   const ScoreSummary& m = evaluation.model;
@@ -265,11 +505,6 @@ std::string TravelText(const PropagationSummary& p) {
          Rounded(p.movers, 4) + " people who moved.";
 }
 
-std::string SpeedText(const PropagationMean& slowness) {
-  const std::optional<PropagationMean> speed = Speed(slowness);
-  return speed ? FigureText(*speed) : (slowness.known() ? "undefined" : "-");
-}
-
 TextTable PropagationTable(const std::vector<PropagationColumn>& columns) {
   std::vector<std::string> header = {"propagation"};
   for (const PropagationColumn& column : columns) header.push_back(column.name);
@@ -313,48 +548,6 @@ std::vector<std::string> FoldPropagationCells(const PropagationSummary& s) {
           CountsText(s.false_movers, s.bystanders)};
 }
 
-namespace {
-
-double HalfInterval95(const PairedDifference& d) {
-  return StudentQuantile95(d.clusters - 1.0) * d.error[kHipAde];
-}
-
-// One honest sentence on two configurations: they differ where the 95 % interval of the difference
-// excludes zero.
-std::string ConclusionText(const PairedDifference& d) {
-  if (d.clusters < 2) return d.b + " cannot be compared with " + d.a + ".";
-  const Metric& metric = kMetrics[kHipAde];
-  const double change = d.value[kHipAde], error = d.error[kHipAde];
-  const std::string by = Rounded(std::abs(change), 2) + " +- " + Rounded(error, 2) + " " +
-                         metric.unit + " of " + metric.name;
-  const double half = HalfInterval95(d);
-  const std::string interval = "95 % interval +- " + Rounded(half, 2) + " " + metric.unit + ": " +
-                               ClustersText(d.clustered_by, d.clusters) + ", Student's t with " +
-                               std::to_string(d.clusters - 1) + " degree" +
-                               (d.clusters > 2 ? "s" : "") + " of freedom";
-  if (std::abs(change) <= half) {
-    return d.b + " is not distinguishable from " + d.a + " (" + by + "; " + interval + ").";
-  }
-  return d.b + " predicts " + (change < 0.0 ? "better" : "worse") + " than " + d.a + " by " + by +
-         " (" + interval + ").";
-}
-
-// A table by --group_by; empty where no label tells recordings apart.
-std::string HeldOutGroupsText(const std::vector<CrossValidation>& candidates,
-                              const MetricList& shown) {
-  std::vector<std::string> header = {NamesText(shown) + ", held out"};
-  std::vector<const ScoreSummary*> summaries;
-  for (const CrossValidation& candidate : candidates) {
-    header.push_back(candidate.predictor);
-    summaries.push_back(&candidate.summary);
-  }
-  TextTable table(header);
-  AddGroups(summaries, shown, true, "", &table);
-  return table.empty() ? "" : "\n" + table.ToString();
-}
-
-}  // namespace
-
 std::string CrossValidationText(const std::vector<CrossValidation>& candidates) {
   std::string text;
   if (candidates.empty()) return text;
@@ -363,25 +556,24 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   for (const CrossValidation& candidate : candidates) {
     text += FailuresText(candidate.predictor, candidate.summary, shown);
   }
-  std::vector<std::string> header = {"fold", ">held out"};
-  Append(Titles(shown), &header);
-  Append({">failed", ">fell"}, &header);
-  if (groups) Append({">onset error", ">missed movers", ">false movers"}, &header);
-  TextTable folds(header);
+  using Cells = std::vector<std::string>;
+  const Cells onsets = {">onset error", ">missed movers", ">false movers"};
+  TextTable folds(
+      Row({{"fold", ">held out"}, Titles(shown), {">failed", ">fell"}, groups ? onsets : Cells()}));
   for (const FoldScore& fold : candidates[0].folds) {
-    std::vector<std::string> row = {fold.name, std::to_string(fold.held_out)};
-    Append(PlainCells(fold.value, shown), &row);
-    Append({std::to_string(fold.failures), std::to_string(fold.falls)}, &row);
-    if (groups) Append(FoldPropagationCells(fold.propagation), &row);
-    folds.Add(row);
+    folds.Add(Row({{fold.name, std::to_string(fold.held_out)},
+                   PlainCells(fold.value, shown),
+                   {std::to_string(fold.failures), std::to_string(fold.falls)},
+                   groups ? FoldPropagationCells(fold.propagation) : Cells()}));
   }
   text += folds.ToString() + "\n";
-  header = {"held out"};
-  for (MetricId m : shown) header.push_back(kMetrics[m].Title());
-  Append({"frame-weighted", kMetrics[kHipAde].name + (" - " + candidates[0].predictor), ">failed",
-          ">fell", ">fell harder", ">settle", groups ? ">harder, farther" : ">"},
-         &header);
-  TextTable table(header);
+  Cells titles;
+  for (MetricId m : shown) titles.push_back(kMetrics[m].Title());
+  TextTable table(
+      Row({{"held out"},
+           titles,
+           {"frame-weighted", kMetrics[kHipAde].name + (" - " + candidates[0].predictor), ">failed",
+            ">fell", ">fell harder", ">settle", groups ? ">harder, farther" : ">"}}));
   const auto folds_that = [](int number, const CrossValidation& candidate) {
     return candidate.fits > 0 ? std::to_string(number) + " of " + std::to_string(candidate.fits)
                               : "";
@@ -389,18 +581,16 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   for (const CrossValidation& candidate : candidates) {
     const PairedDifference difference = Compare(candidates[0], candidate);
     const bool compared = &candidate != &candidates[0] && difference.recordings > 0;
-    std::vector<std::string> row = {candidate.predictor};
-    Append(MeanCells(candidate.summary.mean, shown), &row);
-    Append({Joined(PlainCells(candidate.summary.frame_weighted.value, shown), " / "),
-            compared ? Rounded(difference.value[kHipAde], 2) + " +- " +
-                           Rounded(difference.error[kHipAde], 2)
-                     : "",
-            std::to_string(candidate.failures), std::to_string(candidate.falls),
-            candidate.fits > 0 ? std::to_string(candidate.falls_harder) : "",
-            folds_that(candidate.settling, candidate),
-            groups ? folds_that(candidate.harder_farther, candidate) : ""},
-           &row);
-    table.Add(row);
+    table.Add(Row({{candidate.predictor},
+                   MeanCells(candidate.summary.mean, shown),
+                   {Joined(PlainCells(candidate.summary.frame_weighted.value, shown), " / "),
+                    compared ? Rounded(difference.value[kHipAde], 2) + " +- " +
+                                   Rounded(difference.error[kHipAde], 2)
+                             : "",
+                    std::to_string(candidate.failures), std::to_string(candidate.falls),
+                    candidate.fits > 0 ? std::to_string(candidate.falls_harder) : "",
+                    folds_that(candidate.settling, candidate),
+                    groups ? folds_that(candidate.harder_farther, candidate) : ""}}));
   }
   std::string said =
       ErrorsText(candidates[0].summary) + ObservedText(candidates[0].summary) +
@@ -411,20 +601,25 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   for (size_t i = 1; i < candidates.size(); ++i) {
     said += ConclusionText(Compare(candidates[0], candidates[i])) + "\n";
   }
-  text += table.ToString() + TextLines(said) + HeldOutGroupsText(candidates, shown);
-  std::vector<std::pair<std::string, const StepScore*>> steps;
-  for (const CrossValidation& candidate : candidates) {
-    steps.emplace_back(candidate.predictor, &candidate.summary.steps);
-  }
-  const std::string who_steps = StepScoresText(steps);
-  if (!who_steps.empty()) text += "\n" + who_steps;
-  if (!groups) return text;
+  Cells header = {NamesText(shown) + ", held out"};
+  std::vector<const ScoreSummary*> summaries;
+  NamedStepScores steps;
   std::vector<PropagationColumn> columns;
   std::vector<GroupMetricsRow> metrics;
   for (const CrossValidation& candidate : candidates) {
+    header.push_back(candidate.predictor);
+    summaries.push_back(&candidate.summary);
+    steps.emplace_back(candidate.predictor, &candidate.summary.steps);
     columns.push_back({candidate.predictor, &candidate.summary.propagation});
     if (candidate.groups) metrics.push_back({candidate.predictor, &*candidate.groups});
   }
+  TextTable by_group(header);  // empty where no label of --group_by tells recordings apart
+  AddGroups(summaries, shown, true, "", &by_group);
+  const std::string who_steps = StepScoresText(steps);
+  text += table.ToString() + TextLines(said) +
+          (by_group.empty() ? "" : "\n" + by_group.ToString()) +
+          (who_steps.empty() ? "" : "\n" + who_steps);
+  if (!groups) return text;
   return text + "\n" + PropagationText(columns) +
          (metrics.empty() ? "" : "\n" + GroupMetricsText(metrics));
 }

@@ -1,6 +1,8 @@
-// ident: evaluations, cross-validations and propagation as text and tables for a terminal.
+// ident: evaluations, cross-validations and propagation as JSON, whose keys carry their units, and
+// as text and tables for a terminal.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -20,8 +22,6 @@ struct PropagationColumn {
 };
 TextTable PropagationTable(const std::vector<PropagationColumn>& columns);
 std::string PropagationText(const std::vector<PropagationColumn>& columns);
-// "3.2 +- 0.3", "-" where nothing is known, "undefined" where all begin at once.
-std::string SpeedText(const PropagationMean& slowness);
 // A sentence about how pushes travel through groups, measured and predicted; empty without any.
 std::string TravelText(const PropagationSummary& propagation);
 // Onset error, missed and false movers of one fold.
@@ -30,5 +30,28 @@ std::vector<std::string> FoldPropagationCells(const PropagationSummary& summary)
 // The predictors, and whether the first differs from the best of the others.
 Screen CrossValidationScreen(const std::vector<CrossValidation>& candidates);
 std::string CrossValidationText(const std::vector<CrossValidation>& candidates);
+
+inline constexpr char kScoresSchema[] = "pushid-scores/1";  // of --json_out
+
+nlohmann::ordered_json ToJson(const Evaluation& evaluation);
+nlohmann::ordered_json ToJson(const ScoreSummary& summary, bool with_recordings);
+nlohmann::ordered_json ToJson(const CrossValidation& validation);
+nlohmann::ordered_json ToJson(const PairedDifference& difference);
+
+// A row of a table of recordings: id, frames, and the metrics or the failure.
+nlohmann::ordered_json ScoreJson(const Score& score, const MetricList& metrics);
+// Adds `mean`, `frame_weighted`, `by_KEY` and `without_label`. with_clusters: each says by what its
+// errors are clustered.
+void AddMeans(const ScoreMeans& means, const MetricList& metrics, bool with_clusters,
+              nlohmann::ordered_json* json);
+
+// The means over recordings in a file of scores, of hips or of bodies. Errors: keys that are
+// missing or of another type.
+Result<Metrics> MeanMetrics(const nlohmann::ordered_json& json, const MetricList& metrics,
+                            const std::string& file);
+
+// Several samples of one forecast, each scored by itself, as SDM has it: the means of all numbers.
+// Whatever has no value in one of them has none; what is no number is the first's.
+nlohmann::ordered_json MeanOfSamples(const std::vector<nlohmann::ordered_json>& samples);
 
 }  // namespace pushid

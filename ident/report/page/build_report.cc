@@ -54,15 +54,14 @@ std::vector<RecordingView> ViewRecordings(const FitResult& result,
   }
   BandOptions options;
   options.samples = kBandSamples;
-  const Result<std::vector<ParameterSet<double>>> samples = SampleParameters(result, options);
-  if (!samples.ok()) return views;
+  const std::vector<ParameterSet<double>> samples = SampleParameters(result, options);
   const std::vector<ErrorPath> errors = ErrorPaths(result, fitted);
   ParallelFor(
       static_cast<int>(views.size()), num_threads,
       [&](int i) {
         if (!views[i].run.prediction.status.ok) return;
         views[i].bands =
-            ComputeBands(result, samples.value(), errors, views[i].run.recording, options.seed);
+            ComputeBands(result, samples, errors, views[i].run.recording, options.seed);
       },
       progress);
   for (RecordingView& view : views) {
@@ -71,21 +70,6 @@ std::vector<RecordingView> ViewRecordings(const FitResult& result,
     view.run.recording = InLaboratory(std::move(view.run.recording));
   }
   return views;
-}
-
-// How pushes travel through the recordings of several people that the model predicts.
-PropagationSummary PropagationOf(const FitResult& result, const std::vector<RecordingView>& views) {
-  const IdentifiedModel model = ModelOf(result);
-  std::vector<PropagationScore> scores;
-  for (const RecordingView& view : views) {
-    const FormationRun& run = view.run;
-    if (run.recording.num_people() < 2 || !run.prediction.status.ok) continue;
-    scores.push_back(ScorePropagation(run.recording, run.prediction.hip));
-    AddContactFigures(model, run.recording, run.prediction, &scores.back());
-  }
-  std::vector<const PropagationScore*> all;
-  for (const PropagationScore& score : scores) all.push_back(&score);
-  return SummarizePropagation(all);
 }
 
 using RenderSection = ReportSection(const ReportSource& source);
@@ -118,107 +102,6 @@ constexpr RenderSection* kSections[] = {LeadSection,
                                         OfModel<SolveSection>,
                                         OfModel<AdviceSection>,
                                         OfModel<ProvenanceSection>};
-
-StepScore ScoreOf(const std::vector<RecordingView>& views) {
-  std::vector<StepPrediction> predictions;
-  for (const RecordingView& view : views) {
-    const auto steps = StepPredictions(view.run.recording, view.run.prediction);
-    predictions.insert(predictions.end(), steps.begin(), steps.end());
-  }
-  return ScoreSteps(predictions);
-}
-
-ReportFigure ReliabilityFigure(const StepScore& score) {
-  TextTable numbers({">tracks", ">predicted", ">observed"});
-  for (const StepFifth& fifth : score.fifths) {
-    numbers.Add(
-        {std::to_string(fifth.tracks), DoubleText(fifth.predicted), DoubleText(fifth.observed)});
-  }
-  return {"step_reliability",
-          "Share of people who stepped, by fifths of the predicted probability.",
-          {{}, {ReliabilityChart(score)}},
-          numbers};
-}
-
-// Recordings of several people that the model predicts, with hips by the model and by a baseline
-// that sees the recording until the last push ends.
-struct ShownGroups {
-  std::vector<PendulumRecording> recordings;
-  std::vector<Recording> with_bodies;
-  std::vector<PredictedGroup> by_model, by_velocity;
-};
-
-ShownGroups GroupsOf(const std::vector<RecordingView>& views) {
-  ShownGroups groups;
-  for (const RecordingView& view : views) {
-    const PendulumRecording& recording = view.run.recording;
-    if (recording.num_people() < 2 || !view.run.prediction.status.ok) continue;
-    const int index = static_cast<int>(groups.recordings.size());
-    groups.recordings.push_back(recording);
-    groups.with_bodies.push_back(*view.recording);
-    groups.by_model.push_back({index, view.run.prediction.hip});
-    groups.by_velocity.push_back({index, ConstantVelocityBaseline(recording)});
-  }
-  return groups;
-}
-
-}  // namespace
-
-Report BuildReport(const FittedModel& model, const std::vector<Recording>& recordings,
-                   const BuildReportOptions& options) {
-  const FitResult& result = model.fit;
-  Report report;
-  report.title = "pushid: " + std::to_string(result.recordings.size()) + " recordings (" +
-                 model.provenance.setting + "), preset " + result.options.preset;
-  report.subtitle =
-      "parameters, their uncertainty and their predictions; pushid " + model.provenance.version;
-  ReportSource source{model};
-  source.views = ViewRecordings(result, recordings, options.num_threads, options.progress);
-  const IdentifiedModel identified = ModelOf(result);
-  source.frequency = FrequencyResponses(identified, MakePendulumRecordings(recordings));
-  source.propagation = PropagationOf(result, source.views);
-  for (RenderSection* const render : kSections) report.sections.push_back(render(source));
-  return report;
-}
-
-std::string DetailsText(const FittedModel& model) { return ToText(BuildReport(model, {}, {})); }
-
-ReportSection StepSection(const ReportSource& source) {
-  ReportSection section{"steps", "Who steps"};
-  if (!source.fit.step_probability) return section;
-  const StepScore score = ScoreOf(source.views);
-  if (!score.known()) return section;
-  section.tables.push_back(
-      {"who steps in the recordings shown here, which were fitted; pushid-crossvalidate scores "
-       "others",
-       StepScoresTable({{"predicted", &score}})});
-  section.figures.push_back(ReliabilityFigure(score));
-  return section;
-}
-
-ReportSection GroupSection(const ReportSource& source) {
-  ReportSection section{"groups", "Groups"};
-  const ShownGroups groups = GroupsOf(source.views);
-  const RecordedBodies bodies = BodiesOfGroups(groups.with_bodies);
-  const auto model = CompareHips(groups.recordings, bodies, groups.by_model);
-  if (!model) return section;
-  const auto velocity = CompareHips(groups.recordings, bodies, groups.by_velocity);
-  section.paragraphs = {bodies.empty()
-                            ? "The recordings have no whole bodies, so only onsets are scored."
-                            : "For these scores whole bodies are the first poses, carried by the "
-                              "predicted hips; steps that the model predicts do "
-                              "not move them.",
-                        GroupMetricsLegend()};
-  section.tables.push_back(
-      {"the recordings shown here; pushid-crossvalidate scores recordings that were not fitted",
-       GroupMetricsTable({{"predicted", &*model}, {"constant velocity", &*velocity}})});
-  section.tables.push_back(
-      {"how the push travels through them, +- a standard error over recordings",
-       PropagationTable({{"predicted and measured", &source.propagation}})});
-  return section;
-}
-
-namespace {
 
 constexpr double kDegrees = 180.0 / M_PI;
 constexpr char kErrorLook[] = "fill:none;stroke:#8a8f98;stroke-width:1.2";
@@ -274,16 +157,102 @@ Figure BodeFigure(const FrequencyResponse& response) {
   return figure;
 }
 
-std::string CaptionOf(const FrequencyResponse& response) {
-  const size_t people = response.people.size();
-  const std::string seconds = Rounded(response.segment_s, 3) + " s";
-  return response.Name() + ": " + CountText(response.recordings, "recording") + " of " +
-         CountText(people, "person", "people") + "; the excited frequencies, in periods of " +
-         seconds + (response.output == LoopOutput::kAngle ? "" : "; torque by force platforms") +
-         (people == 1 ? "; errors by the coherence." : "; errors from person to person.");
+}  // namespace
+
+Report BuildReport(const FittedModel& model, const std::vector<Recording>& recordings,
+                   const BuildReportOptions& options) {
+  const FitResult& result = model.fit;
+  Report report;
+  report.title = "pushid: " + std::to_string(result.recordings.size()) + " recordings (" +
+                 model.provenance.setting + "), preset " + result.options.preset;
+  report.subtitle =
+      "parameters, their uncertainty and their predictions; pushid " + model.provenance.version;
+  ReportSource source{model};
+  source.views = ViewRecordings(result, recordings, options.num_threads, options.progress);
+  const IdentifiedModel identified = ModelOf(result);
+  source.frequency = FrequencyResponses(identified, MakePendulumRecordings(recordings));
+  std::vector<PropagationScore> scores;
+  for (const RecordingView& view : source.views) {
+    const FormationRun& run = view.run;
+    if (run.recording.num_people() < 2 || !run.prediction.status.ok) continue;
+    scores.push_back(ScorePropagation(run.recording, run.prediction.hip));
+    AddContactFigures(identified, run.recording, run.prediction, &scores.back());
+  }
+  std::vector<const PropagationScore*> all;
+  for (const PropagationScore& score : scores) all.push_back(&score);
+  source.propagation = SummarizePropagation(all);
+  for (RenderSection* const render : kSections) report.sections.push_back(render(source));
+  return report;
 }
 
-}  // namespace
+std::string DetailsText(const FittedModel& model) { return ToText(BuildReport(model, {}, {})); }
+
+ReportSection StepSection(const ReportSource& source) {
+  ReportSection section{"steps", "Who steps"};
+  if (!source.fit.step_probability) return section;
+  std::vector<StepPrediction> predictions;
+  for (const RecordingView& view : source.views) {
+    const auto steps = StepPredictions(view.run.recording, view.run.prediction);
+    predictions.insert(predictions.end(), steps.begin(), steps.end());
+  }
+  const StepScore score = ScoreSteps(predictions);
+  if (!score.known()) return section;
+  section.tables.push_back(
+      {"who steps in the recordings shown here, which were fitted; pushid-crossvalidate scores "
+       "others",
+       StepScoresTable({{"predicted", &score}})});
+  // Shares over probability, beside the diagonal.
+  Chart chart{"who steps: share over probability", "predicted probability of a step"};
+  chart.y_from = 0.0;
+  chart.y_to = 1.0;
+  ChartPoints shares;
+  TextTable numbers({">tracks", ">predicted", ">observed"});
+  for (const StepFifth& fifth : score.fifths) {
+    shares.emplace_back(fifth.predicted, fifth.observed);
+    numbers.Add({fifth.tracks, fifth.predicted, fifth.observed});
+  }
+  chart.lines = {{{{0.0, 0.0}, {1.0, 1.0}}, kLimitLook},
+                 {shares, kPredictedLook},
+                 {shares, kPredictedLook, true}};
+  section.figures.push_back({"step_reliability",
+                             "Share of people who stepped, by fifths of the predicted probability.",
+                             {{}, {chart}},
+                             numbers});
+  return section;
+}
+
+ReportSection GroupSection(const ReportSource& source) {
+  ReportSection section{"groups", "Groups"};
+  std::vector<PendulumRecording> recordings;
+  std::vector<Recording> with_bodies;
+  std::vector<PredictedGroup> by_model, by_velocity;
+  for (const RecordingView& view : source.views) {
+    const PendulumRecording& recording = view.run.recording;
+    if (recording.num_people() < 2 || !view.run.prediction.status.ok) continue;
+    const int index = static_cast<int>(recordings.size());
+    recordings.push_back(recording);
+    with_bodies.push_back(*view.recording);
+    by_model.push_back({index, view.run.prediction.hip});
+    by_velocity.push_back({index, ConstantVelocityBaseline(recording)});
+  }
+  const RecordedBodies bodies = BodiesOfGroups(with_bodies);
+  const auto model = CompareHips(recordings, bodies, by_model);
+  if (!model) return section;
+  const auto velocity = CompareHips(recordings, bodies, by_velocity);
+  section.paragraphs = {bodies.empty()
+                            ? "The recordings have no whole bodies, so only onsets are scored."
+                            : "For these scores whole bodies are the first poses, carried by the "
+                              "predicted hips; steps that the model predicts do "
+                              "not move them.",
+                        kGroupMetricsLegend};
+  section.tables.push_back(
+      {"the recordings shown here; pushid-crossvalidate scores recordings that were not fitted",
+       GroupMetricsTable({{"predicted", &*model}, {"constant velocity", &*velocity}})});
+  section.tables.push_back(
+      {"how the push travels through them, +- a standard error over recordings",
+       PropagationTable({{"predicted and measured", &source.propagation}})});
+  return section;
+}
 
 ReportSection FrequencySection(const ReportSource& source) {
   ReportSection section{"frequency", "Frequency response"};
@@ -297,8 +266,15 @@ ReportSection FrequencySection(const ReportSource& source) {
   const std::string without = WithoutLinearLoop(source.fit.options.model);
   section.Say(without.empty() ? "" : "There is no curve: " + without + ".");
   for (const FrequencyResponse& response : source.frequency) {
-    section.figures.push_back({"frequency_" + response.Key(), CaptionOf(response),
-                               BodeFigure(response), FrequencyTable({response})});
+    const size_t people = response.people.size();
+    const std::string caption =
+        response.Name() + ": " + CountText(response.recordings, "recording") + " of " +
+        CountText(people, "person", "people") + "; the excited frequencies, in periods of " +
+        Rounded(response.segment_s, 3) + " s" +
+        (response.output == LoopOutput::kAngle ? "" : "; torque by force platforms") +
+        (people == 1 ? "; errors by the coherence." : "; errors from person to person.");
+    section.figures.push_back(
+        {"frequency_" + response.Key(), caption, BodeFigure(response), FrequencyTable({response})});
   }
   return section;
 }

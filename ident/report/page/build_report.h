@@ -29,7 +29,7 @@ struct BuildReportOptions {
 // joints read, the figure shows skeletons too.
 Report BuildReport(const FittedModel& model, const std::vector<Recording>& recordings,
                    const BuildReportOptions& options);
-// All of it that needs no recordings, for a terminal (--details).
+// The sections that need no recordings, for a terminal (--details).
 std::string DetailsText(const FittedModel& model);
 
 // A recording seen through a model: what was measured, what is predicted from the first frame and

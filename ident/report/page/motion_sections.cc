@@ -26,18 +26,6 @@ namespace {
 constexpr double kSampleSeconds = 1.0 / 30.0, kSeldomSeconds = 1.0 / 6.0;
 constexpr int kManySkeletons = 100;
 
-// Adds the skeleton of a file that lacks joints of a body.
-void AddSkeleton(const RecordedPerson& recorded, AnimatedPerson* person) {
-  person->parents = recorded.joint_parents;
-  if (person->parents.empty()) return;
-  for (const auto& places : recorded.joints) {
-    person->joints.emplace_back(3, places.size());
-    for (size_t j = 0; j < places.size(); ++j) {
-      person->joints.back().col(static_cast<Eigen::Index>(j)) = places[j];
-    }
-  }
-}
-
 // A page as the value of an attribute; line breaks stay.
 std::string ForAttribute(const std::string& page) {
   std::string quoted;
@@ -57,8 +45,17 @@ Animation AnimationOf(const RecordingView& view) {
     AddRecorded(recording, bodies.value().bodies, &animation);
   } else {
     AddRecorded(recording, {}, &animation);
-    for (size_t n = 0; n < animation.people.size(); ++n) {
-      AddSkeleton(view.recording->people[n], &animation.people[n]);
+    for (size_t n = 0; n < animation.people.size(); ++n) {  // files may lack joints of a body
+      const RecordedPerson& recorded = view.recording->people[n];
+      AnimatedPerson& person = animation.people[n];
+      person.parents = recorded.joint_parents;
+      for (const auto& places : recorded.joints) {
+        if (person.parents.empty()) break;
+        person.joints.emplace_back(3, places.size());
+        for (size_t j = 0; j < places.size(); ++j) {
+          person.joints.back().col(static_cast<Eigen::Index>(j)) = places[j];
+        }
+      }
     }
   }
   if (view.run.prediction.status.ok) AddPrediction(recording, view.run.prediction, {}, &animation);
@@ -66,95 +63,50 @@ Animation AnimationOf(const RecordingView& view) {
   return animation;
 }
 
-}  // namespace
-
-ReportSection FigureSection(const ReportSource& source) {
-  ReportSection section{"figure", "Moving figure"};
-  if (source.views.empty()) return section;
-  section.paragraphs = {
-      "Every recording with the model's prediction from its first frame and the push. The slider "
-      "and the list can be operated with the arrow keys."};
-  std::vector<Animation> animations;
-  int skeletons = 0;
-  for (const RecordingView& view : source.views) {
-    animations.push_back(AnimationOf(view));
-    skeletons += view.run.num_people();
-  }
-  const double seconds = skeletons > kManySkeletons ? kSeldomSeconds : kSampleSeconds;
-  section.widget = "<iframe class=\"moving\" title=\"moving figure\" srcdoc=\"" +
-                   ForAttribute(AnimationHtml(animations, seconds)) +
-                   "\"></iframe>\n<noscript><p>The moving figure needs JavaScript; everything else "
-                   "on this page does not.</p></noscript>\n";
-  return section;
-}
-
-namespace {
-
-// Bars where a foot is off the ground.
-std::vector<ChartLane> FeetLanes(const FormationRun& run, int person) {
-  std::vector<ChartLane> lanes;
-  for (Foot foot : kFeet) {
-    ChartLane lane{NameOf(foot), {}, kLiftedLook};
-    for (const FootStep& step : run.recording.steps[person].steps) {
-      const int end = std::min(step.landing, run.recording.num_frames() - 1);
-      if (step.foot == foot) lane.bars.emplace_back(run.Seconds(step.lift_off), run.Seconds(end));
-    }
-    lanes.push_back(lane);
-  }
-  return lanes;
-}
-
-// One coordinate of one person over time: measured, predicted and with bands where there are some.
-// measured, predicted: of a frame; edge: of a point of the bands.
-template <typename Measured, typename Predicted, typename Edge>
-void AddPerson(const RecordingView& view, int person, int predicted_frames,
-               const Measured& measured, const Predicted& predicted, const Edge& edge,
-               Chart* chart) {
+// A row of BandPoint of one person over time, relative to `from`: measured, predicted and with
+// bands where there are some.
+void AddPerson(const RecordingView& view, int person, int row, double from, Chart* chart) {
   const FormationRun& run = view.run;
-  const auto points = [&run](int frames, const auto& value) {
+  const auto points = [&](int frames, const auto& value) {
     ChartPoints placed;
-    for (int t = 0; t < frames; ++t) placed.emplace_back(run.Seconds(t), value(t));
+    for (int t = 0; t < frames; ++t) placed.emplace_back(run.Seconds(t), value(t) - from);
     return placed;
   };
   if (!view.bands.people.empty()) {
     const PathBand& band = view.bands.people[person];
     const auto edges = [&](const std::vector<BandPoint>& ends) {
-      return points(static_cast<int>(ends.size()), [&](int t) { return edge(ends[t]); });
+      return points(static_cast<int>(ends.size()), [&](int t) { return ends[t][row]; });
     };
     chart->bands.push_back({edges(band.lower90), edges(band.upper90), kWideBandLook});
     chart->bands.push_back({edges(band.lower50), edges(band.upper50), kNarrowBandLook});
   }
-  if (predicted_frames > 0)
-    chart->lines.push_back({points(predicted_frames, predicted), kPredictedLook});
-  chart->lines.push_back({points(run.recording.num_frames(), measured), kMeasuredLook});
+  const RolloutStatus& status = run.prediction.status;
+  const bool hip = row < 3;  // empty after a failed rollout
+  const int frames = run.recording.num_frames(), valid = hip ? 0 : status.frame;
+  const ChartPoints predicted = points(status.ok ? frames : valid, [&](int t) {
+    return hip ? run.prediction.hip[person][t][row] : run.prediction.path.At(t, person).q[row - 1];
+  });
+  if (!predicted.empty()) chart->lines.push_back({predicted, kPredictedLook});
+  const auto measured = [&](int t) {
+    return hip ? run.recording.hip[person][t][row] : run.recording.states[person][t].q[row - 1];
+  };
+  chart->lines.push_back({points(frames, measured), kMeasuredLook});
 }
 
-// The hip along one axis, relative to `from`.
-void AddHip(const RecordingView& view, int person, int axis, double from, Chart* chart) {
-  const FormationRun& run = view.run;
-  AddPerson(
-      view, person, run.prediction.status.ok ? run.recording.num_frames() : 0,
-      [&](int t) { return run.recording.hip[person][t][axis] - from; },
-      [&](int t) { return run.prediction.hip[person][t][axis] - from; },
-      [&](const BandPoint& end) { return end[axis] - from; }, chart);
-}
-
-Chart HipChart(const RecordingView& view, int person, int axis, const std::string& title) {
-  Chart chart{title, "time, s"};
-  chart.lanes = FeetLanes(view.run, person);
-  AddHip(view, person, axis, view.run.recording.hip[person][0][axis], &chart);
-  return chart;
-}
-
-Chart AngleChart(const RecordingView& view, int person, int row, const std::string& title) {
+// A panel of AddPerson; of hips with bars where a foot is off the ground.
+Chart PersonChart(const RecordingView& view, int person, int row, const std::string& title) {
   const FormationRun& run = view.run;
   Chart chart{title, "time, s"};
-  const int frames =
-      run.prediction.status.ok ? run.recording.num_frames() : run.prediction.status.frame;
-  AddPerson(
-      view, person, frames, [&](int t) { return run.recording.states[person][t].q[row]; },
-      [&](int t) { return run.prediction.path.At(t, person).q[row]; },
-      [&](const BandPoint& end) { return end[row + 1]; }, &chart);
+  chart.Shrink();
+  AddPerson(view, person, row, row < 3 ? run.recording.hip[person][0][row] : 0.0, &chart);
+  for (Foot foot : kFeet) {
+    if (row >= 3) break;
+    ChartLane& lane = chart.lanes.emplace_back(ChartLane{NameOf(foot), {}, kLiftedLook});
+    for (const FootStep& step : run.recording.steps[person].steps) {
+      const int end = std::min(step.landing, run.recording.num_frames() - 1);
+      if (step.foot == foot) lane.bars.emplace_back(run.Seconds(step.lift_off), run.Seconds(end));
+    }
+  }
   return chart;
 }
 
@@ -232,42 +184,6 @@ constexpr char kNetLook[] = "ink net";
 constexpr double kSmallestRange = 10.0;  // N or N m, so that little is not blown up
 constexpr double kNothing = 1e-6;        // N or N m
 
-// The range of the forces in one panel, zero in it.
-std::pair<double, double> RangeOf(const FormationRun& run, const std::vector<ForcePart>& parts,
-                                  int person, int row) {
-  std::pair<double, double> range{0.0, 0.0};
-  const auto add = [&range](double force) {
-    range = {std::min(range.first, force), std::max(range.second, force)};
-  };
-  for (int t = 0; t < run.num_frames(); ++t) {
-    const NetForce<double>& force = run.Force(person, t);
-    add(force.Total()[row]);
-    for (ForcePart part : parts) add(force[part][row]);
-  }
-  return range;
-}
-
-// The net force is drawn first and thick, so that a part that equals it shows on top.
-Chart ForceChart(const FormationRun& run, const std::vector<ForcePart>& parts, int person,
-                 int row) {
-  Chart chart{"", "time, s"};
-  const auto line = [&](auto force_at, const std::string& look) {
-    ChartLine drawn{{}, look};
-    bool acts = false;
-    for (int t = 0; t < run.num_frames(); ++t) {
-      const double force = force_at(run.Force(person, t))[row];
-      acts = acts || force != 0.0;
-      drawn.points.emplace_back(run.Seconds(t), force);
-    }
-    if (acts) chart.lines.push_back(drawn);
-  };
-  line([](const NetForce<double>& force) { return force.Total(); }, kNetLook);
-  for (ForcePart part : parts) {
-    line([part](const NetForce<double>& force) { return force[part]; }, PartLook(part));
-  }
-  return chart;
-}
-
 // Two panels for each person: the net force along the push (N) and the torque about y (N m) over
 // time with their parts, all on one scale, so that heights compare.
 Figure ForcesFigure(const FormationRun& run) {
@@ -278,10 +194,26 @@ Figure ForcesFigure(const FormationRun& run) {
   std::pair<double, double> shared[2];
   for (int n = 0; n < run.num_people(); ++n) {
     for (int column : {0, 1}) {
-      const auto [lowest, highest] = RangeOf(run, parts, n, kRows[column]);
+      Chart chart{"", "time, s"};
+      double lowest = 0.0, highest = 0.0;
+      const auto line = [&](auto force_at, const std::string& look) {
+        ChartLine drawn{{}, look};
+        bool acts = false;
+        for (int t = 0; t < run.num_frames(); ++t) {
+          const double force = force_at(run.Force(n, t))[kRows[column]];
+          acts = acts || force != 0.0;
+          lowest = std::min(lowest, force), highest = std::max(highest, force);
+          drawn.points.emplace_back(run.Seconds(t), force);
+        }
+        if (acts) chart.lines.push_back(drawn);
+      };
+      // The net force is drawn first and thick, so that a part that equals it shows on top.
+      line([](const NetForce<double>& force) { return force.Total(); }, kNetLook);
+      for (ForcePart part : parts) {
+        line([part](const NetForce<double>& force) { return force[part]; }, PartLook(part));
+      }
       auto& [from, to] = shared[column];
       from = std::min(from, lowest), to = std::max(to, highest);
-      Chart chart = ForceChart(run, parts, n, kRows[column]);
       chart.title = kForceHeads[column];
       if (run.num_people() > 1) chart.title = "person " + std::to_string(n) + ": " + chart.title;
       if (highest - lowest < kNothing) chart.y_label = "nothing";
@@ -317,43 +249,12 @@ Figure PathFigure(const RecordingView& view) {
   Figure figure{LegendOf(view), {}};
   for (int n = 0; n < people; ++n) {
     const std::string who = people == 1 ? "" : view.run.recording.subject_ids[n] + ": ";
-    for (const Chart& chart :
-         {HipChart(view, n, 0, who + "hip forward, m"), HipChart(view, n, 1, "hip to the left, m"),
-          AngleChart(view, n, 2, "theta, rad"), AngleChart(view, n, 3, "phi, rad")}) {
-      figure.panels.push_back(chart);
-      figure.panels.back().Shrink();
-    }
+    figure.panels.push_back(PersonChart(view, n, 0, who + "hip forward, m"));
+    figure.panels.push_back(PersonChart(view, n, 1, "hip to the left, m"));
+    figure.panels.push_back(PersonChart(view, n, 3, "theta, rad"));
+    figure.panels.push_back(PersonChart(view, n, 4, "phi, rad"));
   }
   return figure;
-}
-
-// The recorded bodies and the predicted pendulums at a few moments, from the side.
-std::string StripOf(const RecordingView& view) {
-  Animation animation = AnimationOf(view);
-  animation.title = "from the side";
-  return "<div class=\"scroll\" tabindex=\"0\">" + PoseStrip(animation, kPosesOfStrip).ToInline() +
-         "</div>\n";
-}
-
-std::string FoldTitle(const RecordingView& view) {
-  const PendulumRecording& r = view.run.recording;
-  std::string title = r.id;
-  if (view.run.prediction.status.ok) {
-    title += ": predicted " +
-             MetricsText(TableMetrics(0), ScoreHip(r, view.run.prediction.hip).value, 2);
-  }
-  return title + (view.note.empty() ? "" : " (" + view.note + ")");
-}
-
-// The hips of everybody along the push, from the pushed person's start on.
-Chart TypicalChart(const RecordingView& view, const std::string& title) {
-  const PendulumRecording& recording = view.run.recording;
-  const Eigen::Vector2d along = PushDirection(recording);
-  const int axis = std::abs(along[0]) >= std::abs(along[1]) ? 0 : 1;
-  Chart chart{title, "time, s", axis == 0 ? "hip forward, m" : "hip to the left, m"};
-  const double from = recording.hip[std::max(0, recording.pushed_person)][0][axis];
-  for (int n = 0; n < recording.num_people(); ++n) AddHip(view, n, axis, from, &chart);
-  return chart;
 }
 
 // Hips of the recordings that are predicted in the middle, best and worst; none without recordings.
@@ -378,13 +279,19 @@ std::optional<ReportFigure> TypicalFigure(const ReportSource& source) {
   TextTable numbers(header);
   for (const auto& [which, place] : shown) {
     const auto& [error, view] = ranked[place];
-    panels.push_back(TypicalChart(*view, which + ": " + view->run.recording.id));
-    panels.back().x_label = "time, s (" + kMetrics[kHipAde].Text(error, 2) + ")";
+    const PendulumRecording& recording = view->run.recording;
+    const Eigen::Vector2d along = PushDirection(recording);
+    const int axis = std::abs(along[0]) >= std::abs(along[1]) ? 0 : 1;
+    const double from = recording.hip[std::max(0, recording.pushed_person)][0][axis];
+    Chart& chart = panels.emplace_back(Chart{which + ": " + recording.id,
+                                             "time, s (" + kMetrics[kHipAde].Text(error, 2) + ")",
+                                             axis == 0 ? "hip forward, m" : "hip to the left, m"});
+    for (int n = 0; n < recording.num_people(); ++n) AddPerson(*view, n, axis, from, &chart);
     if (legend.empty()) legend = LegendOf(*view);
     const TextTable path = PathNumbers(*view);
     for (size_t i = 1; i < path.rows().size(); ++i) {
       std::vector<std::string> row = path.rows()[i];
-      row.insert(row.begin(), {which, view->run.recording.id});
+      row.insert(row.begin(), {which, recording.id});
       numbers.Add(row);
     }
   }
@@ -403,6 +310,26 @@ std::optional<ReportFigure> TypicalFigure(const ReportSource& source) {
 
 }  // namespace
 
+ReportSection FigureSection(const ReportSource& source) {
+  ReportSection section{"figure", "Moving figure"};
+  if (source.views.empty()) return section;
+  section.paragraphs = {
+      "Every recording with the model's prediction from its first frame and the push. The slider "
+      "and the list can be operated with the arrow keys."};
+  std::vector<Animation> animations;
+  int skeletons = 0;
+  for (const RecordingView& view : source.views) {
+    animations.push_back(AnimationOf(view));
+    skeletons += view.run.num_people();
+  }
+  const double seconds = skeletons > kManySkeletons ? kSeldomSeconds : kSampleSeconds;
+  section.widget = "<iframe class=\"moving\" title=\"moving figure\" srcdoc=\"" +
+                   ForAttribute(AnimationHtml(animations, seconds)) +
+                   "\"></iframe>\n<noscript><p>The moving figure needs JavaScript; everything else "
+                   "on this page does not.</p></noscript>\n";
+  return section;
+}
+
 ReportSection MotionSection(const ReportSource& source) {
   ReportSection section{"motion", "Measured and predicted motion"};
   if (source.views.empty()) return section;
@@ -413,8 +340,15 @@ ReportSection MotionSection(const ReportSource& source) {
       "a foot was off the ground. The forces explain the motion: balance, friction, interaction, "
       "push and all others add up to the net force (thick)."};
   for (const RecordingView& view : source.views) {
-    ReportFold fold{FoldTitle(view), {}};
-    const std::string& id = view.run.recording.id;
+    const PendulumRecording& recording = view.run.recording;
+    const Prediction& prediction = view.run.prediction;
+    const std::string& id = recording.id;
+    ReportFold fold{id, {}};
+    if (prediction.status.ok) {
+      const Metrics errors = ScoreHip(recording, prediction.hip).value;
+      fold.title += ": predicted " + MetricsText(TableMetrics(0), errors, 2);
+    }
+    if (!view.note.empty()) fold.title += " (" + view.note + ")";
     fold.figures.push_back({"motion_" + id, "Measured and predicted motion of " + id + ".",
                             PathFigure(view), PathNumbers(view)});
     if (const std::optional<Figure> feet = FeetFigure(view.run)) {
@@ -423,12 +357,16 @@ ReportSection MotionSection(const ReportSource& source) {
                                   ", with the times of landings: within a predicted foot, beside "
                                   "a recorded one.",
                               *feet, FeetNumbers(view.run)});
-      fold.widget = StripOf(view);
+      // The recorded bodies and the predicted pendulums at a few moments, from the side.
+      Animation animation = AnimationOf(view);
+      animation.title = "from the side";
+      fold.widget = "<div class=\"scroll\" tabindex=\"0\">" +
+                    PoseStrip(animation, kPosesOfStrip).ToInline() + "</div>\n";
     }
-    if (view.run.prediction.status.ok) {
-      const ForceStory story = RichestStory(view.run.recording, view.run.prediction);
+    if (prediction.status.ok) {
+      const ForceStory story = RichestStory(recording, prediction);
       fold.figures.push_back({"forces_" + id,
-                              "Forces in " + id + ". " + StoryText(view.run.recording, story),
+                              "Forces in " + id + ". " + StoryText(recording, story),
                               ForcesFigure(view.run), ForceNumbers(view.run)});
     }
     section.folds.push_back(std::move(fold));

@@ -8,7 +8,7 @@ namespace pushid {
 // The report in a few sentences, with hips of the recordings that are predicted best, in the middle
 // and worst.
 ReportSection LeadSection(const ReportSource& source);
-// Everybody's motion, to be played.
+// The motion of all people, to be played.
 ReportSection FigureSection(const ReportSource& source);
 // Each recording's motion with its prediction, bands and forces.
 ReportSection MotionSection(const ReportSource& source);

@@ -9,7 +9,6 @@
 #include "datasets/loading/load_recordings.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/validation/crossvalidation.h"
-#include "ident/validation/scores_json.h"
 #include "ident/validation/scores_report.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

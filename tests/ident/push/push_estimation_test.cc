@@ -59,9 +59,6 @@ TEST(PushEstimation, GivesBackANetPush) {
     for (size_t i = 0; i < truth.force.size(); ++i) {
       EXPECT_LT((estimated.push.force[i] - truth.force[i]).norm(), 1e-7);
     }
-    const Vector4<double> impulse =
-        truth.mean * static_cast<double>(truth.force.size()) * made.scene.dt;
-    EXPECT_LT((estimated.impulse - impulse).norm(), 1e-7);
   }
 }
 
@@ -113,8 +110,15 @@ TEST(PushEstimation, AMovingPersonNeedsNoBlowToMove) {
     const EstimatedPush at_rest = Estimated(recording, inside, estimation);
     EXPECT_TRUE(FirstRowStandsOut(at_rest.push.force));
     EXPECT_EQ(at_rest.start_speed, 0.0);
-    EXPECT_GT(at_rest.peak_force, 1000.0);
-    EXPECT_LT(usual.peak_force, 0.3 * at_rest.peak_force);
+    const auto peak = [](const EstimatedPush& estimated) {
+      double most = 0.0;
+      for (const Vector4<double>& row : estimated.push.force) {
+        most = std::max(most, row.head<2>().norm());
+      }
+      return most;
+    };
+    EXPECT_GT(peak(at_rest), 1000.0);
+    EXPECT_LT(peak(usual), 0.3 * peak(at_rest));
     // Before the push people stand still, and are taken to.
     estimation.initial_velocity.reset();
     EXPECT_EQ(Estimated(recording, {5, 45}, estimation).start_speed, 0.0);

@@ -51,9 +51,9 @@ TEST(PushFromSensor, KeepsTheImpulseAtAnySamplingRate) {
   const PendulumRecording recording = StandingPerson();
   for (double step : {1e-4, 1e-3, 0.0101, 1.0 / 60.0, 0.04}) {
     const SensorRecord record = HalfSine(step);
-    SensorPushOptions options;
+    SensorChoice options;
     options.direction = {3.0, -4.0, 0.0};
-    const Push push = Unwrapped(PushFromSensor(record, recording, options));
+    const Push push = Unwrapped(PushFromSensor(record, options, recording, 0));
     const double expected = TrapezoidImpulse(record).x();
     const Vector4<double> impulse = Impulse(push, recording.scene.dt);
     EXPECT_NEAR(impulse[0], 0.6 * expected, 1e-11);
@@ -81,9 +81,9 @@ TEST(PushFromSensor, PositionsAreOfSecondOrder) {
     for (int shift = 0; shift < 20; ++shift) {
       const PendulumRecording recording =
           MakePendulumRecording(MakeSyntheticRecordings(options).value()[0].recording);
-      SensorPushOptions given;
-      given.frame_zero_time_s = -0.005 * shift;
-      const Push push = Unwrapped(PushFromSensor(record, recording, given));
+      SensorChoice given;
+      given.start_s = -0.005 * shift;
+      const Push push = Unwrapped(PushFromSensor(record, given, recording, 0));
       const double dt = recording.scene.dt;
       double x = 0.0, v = 0.0;
       for (int t = 0; t + 1 < recording.num_frames(); ++t) {
@@ -108,7 +108,7 @@ TEST(PushFromSensor, RowsAreTheForceAtItsPoint) {
   const SensorRecord record = HalfSine(1e-3, true);
   const Body& body = recording.scene.people[0].body;
   for (bool in_metres : {false, true}) {
-    SensorPushOptions options;
+    SensorChoice options;
     options.height_fraction = 1.25;
     options.direction.setZero();  // not used: the record has its own
     const Vector4<double>& start = recording.states[0][12].q;
@@ -117,7 +117,7 @@ TEST(PushFromSensor, RowsAreTheForceAtItsPoint) {
           body.cart_height + 1.25 * (HipPosition(body, start).z() - body.cart_height);
       options.height_fraction = 0.0;
     }
-    const Push push = Unwrapped(PushFromSensor(record, recording, options));
+    const Push push = Unwrapped(PushFromSensor(record, options, recording, 0));
     for (int i = 0; i < static_cast<int>(push.force.size()); ++i) {
       const Vector4<double>& row = push.force[i];
       const double size = row[0] / 0.6;
@@ -133,11 +133,11 @@ TEST(PushFromSensor, ClockAndIdlingAreHonoured) {
   const PendulumRecording recording = StandingPerson();
   SensorRecord record = HalfSine(1e-3);
   for (double& time : record.time_s) time += 1000.0;
-  SensorPushOptions options;
-  options.frame_zero_time_s = 1000.1;
+  SensorChoice options;
+  options.start_s = 1000.1;
   for (int i = 0; i < record.num_samples(); ++i) record.force[i].x() += i % 2 ? 4.0 : -2.0;
   options.idle_force = 5.0;
-  const Push push = Unwrapped(PushFromSensor(record, recording, options));
+  const Push push = Unwrapped(PushFromSensor(record, options, recording, 0));
   // 0.113 s, nearest to frame 7.
   EXPECT_EQ(push.start_frame, 7);
   EXPECT_EQ(push.EndFrame(), 14);
@@ -148,9 +148,9 @@ TEST(PushFromSensor, ClockAndIdlingAreHonoured) {
 TEST(PushFromSensor, NoiseIsNoPush) {
   const PendulumRecording recording = StandingPerson();
   SensorRecord record = HalfSine(1e-3);
-  const Result<Push> clean = PushFromSensor(record, recording, {});
+  const Result<Push> clean = PushFromSensor(record, {}, recording, 0);
   for (int i = 0; i < record.num_samples(); ++i) record.force[i].x() += 0.5 * std::sin(0.7 * i * i);
-  const Push noisy = Unwrapped(PushFromSensor(record, recording, {}));
+  const Push noisy = Unwrapped(PushFromSensor(record, {}, recording, 0));
   EXPECT_NEAR(noisy.start_frame, clean.value().start_frame, 1);
   EXPECT_NEAR(noisy.EndFrame(), clean.value().EndFrame(), 1);
 }
@@ -158,32 +158,30 @@ TEST(PushFromSensor, NoiseIsNoPush) {
 TEST(PushFromSensor, UnsoundInputsAreErrors) {
   const PendulumRecording recording = StandingPerson();
   const SensorRecord record = HalfSine(1e-3);
-  const auto problem = [&](const SensorRecord& r, const SensorPushOptions& options) {
-    return ProblemOf(PushFromSensor(r, recording, options));
+  const auto problem = [&](const SensorRecord& r, const SensorChoice& options, int person = 0,
+                           double clock_error_s = 0.0) {
+    return ProblemOf(PushFromSensor(r, options, recording, person, clock_error_s));
   };
-  SensorPushOptions options;
+  SensorChoice options;
   EXPECT_EQ(problem(record, options), "no error");
   options.direction.setZero();
   EXPECT_TRUE(Contains(problem(record, options), "direction"));
   options = {};
-  options.person = 2;
-  EXPECT_TRUE(Contains(problem(record, options), "no person 2"));
+  EXPECT_TRUE(Contains(problem(record, options, 2), "no person 2"));
   options = {};
   options.height_m = NAN;
   EXPECT_TRUE(Contains(problem(record, options), "contact height"));
   options = {};
-  options.frame_zero_time_s = 0.26;  // half of the push happens before
+  options.start_s = 0.26;  // half of the push happens before
   EXPECT_TRUE(Contains(problem(record, options), "sensor.csv: "));
   EXPECT_TRUE(Contains(problem(record, options), "outside recording"));
   EXPECT_TRUE(Contains(problem(record, options), "frame 0 is at 0.26 s of the sensor's clock"));
-  options.clock_error_s = 0.5;  // a clock that is known no better
-  EXPECT_EQ(problem(record, options), "no error");
-  options.clock_error_s = 0.0;
+  EXPECT_EQ(problem(record, options, 0, 0.5), "no error") << "a clock that is known no better";
   SensorRecord resting = record;  // it never reads nothing
   for (Vector3<double>& force : resting.force) force.x() += 30.0;
   EXPECT_TRUE(
       Contains(problem(resting, options), "what it reads at rest (zero, in a list of sensors)"));
-  options.frame_zero_time_s = 5.0;  // all of it
+  options.start_s = 5.0;  // all of it
   EXPECT_TRUE(Contains(problem(record, options), "outside recording"));
   options = {};
   options.idle_force = 1000.0;

@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "ident/validation/scores_json.h"
 #include "ident/validation/scores_report.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

@@ -40,8 +40,9 @@ class Design : public ::testing::Test {
     parts_.scatter.Add(parts_.naive, 1.0);
   }
   static size_t Index(const ExperimentDesign& design, const std::string& name) {
-    return static_cast<size_t>(std::find(design.parameters.begin(), design.parameters.end(), name) -
-                               design.parameters.begin());
+    const auto at = std::find_if(design.parameters.begin(), design.parameters.end(),
+                                 [&](const Estimate& e) { return e.name == name; });
+    return static_cast<size_t>(at - design.parameters.begin());
   }
 
   SyntheticOptions study_;
@@ -105,21 +106,20 @@ TEST_F(Design, ASensorTellsMoreOfDragThanAPushWithATail) {
 }
 
 TEST_F(Design, TheTableSaysWhatIsBestForTheParameterAsked) {
-  const ExperimentDesign d = Of({{0, 3, 1, 0.1, 80}, {90, 3, 1, 0.1, 80}, {180, 1, 1, 0.1, 80}});
-  const std::string text = DesignText(d, "mu_y").value();
+  Result<ExperimentDesign> d = Of({{0, 3, 1, 0.1, 80}, {90, 3, 1, 0.1, 80}, {180, 1, 1, 0.1, 80}});
+  const std::string text = DesignText("mu_y", &d).value();
   EXPECT_LT(text.find("to the left"), text.find("forwards"));
   EXPECT_TRUE(Contains(text, "the least useful of 3 candidates"));
   EXPECT_TRUE(Contains(text, "now, by the data alone: mu_y +- "));
-  EXPECT_FALSE(Contains(DesignText(d, "all").value(), "now,"));
-  EXPECT_TRUE(Contains(ProblemOf(DesignText(d, "nu")), "all, mu"));
-  EXPECT_EQ(DesignText(Error{"too few"}, "all").value(), "no further push is proposed: too few\n");
+  EXPECT_FALSE(Contains(DesignText("all", &d).value(), "now,"));
+  EXPECT_TRUE(Contains(ProblemOf(DesignText("nu", &d)), "all, mu"));
+  d = Error{"too few"};
+  EXPECT_EQ(DesignText("all", &d).value(), "no further push is proposed: too few\n");
 }
 
 TEST_F(Design, DefaultCandidatesSpanTheRecordings) {
-  const std::vector<CandidatePush> candidates = DefaultCandidates(recordings_);
-  EXPECT_EQ(candidates.size(), 192u);  // half of them with a sensor
-  const ExperimentDesign d = Of(candidates);
-  EXPECT_GT(d.rows.size(), 0u);
+  const ExperimentDesign d = Of({});
+  EXPECT_GT(d.rows.size(), 96u);  // of 192, half of them with a sensor
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include "ident/validation/crossvalidation.h"
 #include "ident/validation/group_metrics.h"
-#include "ident/validation/scores_json.h"
 #include "ident/validation/scores_report.h"
 #include "tests/models/body_samples.h"
 #include "tests/test_support.h"

@@ -1,5 +1,5 @@
 // Scores as JSON, and their means read back; what is damaged is refused with the key's name.
-#include "ident/validation/scores_json.h"
+#include "ident/validation/scores_report.h"
 
 #include <gtest/gtest.h>
 
