@@ -1,6 +1,6 @@
 """What people do to each other, learned beside contact: does it predict what was not fitted?
 
-learned  held-out errors of groups, settling and false movers (ident/validation/README.md); 20 minutes of one core
+learned  held-out errors of groups, settling and false movers (tests/studies/README.md); 20 minutes of one core
 """
 import studies
 from studies import number, with_error
