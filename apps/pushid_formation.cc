@@ -81,11 +81,8 @@ bool FromFile() {
 }
 
 std::vector<CrowdPlace> PlacesOfFile() {
-  for (const char* flag : {"people", "spacing"}) {
-    if (!Given(flag)) continue;
-    throw Error{std::string("--") + flag + " is for line, diamond and grid; " + FLAGS_formation +
-                " gives the positions"};
-  }
+  RefuseGiven({"people", "spacing"},
+              " is for line, diamond and grid; " + FLAGS_formation + " gives the positions");
   std::optional<std::int64_t> frame;
   if (Given("formation_frame")) frame = FLAGS_formation_frame;
   std::vector<CrowdPlace> places =

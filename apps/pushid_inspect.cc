@@ -22,21 +22,6 @@ using namespace pushid;
 
 std::vector<std::string> g_files;
 
-void CheckFlags() {
-  if (g_files.empty()) {
-    throw Error{"name one or more files to inspect; see pushid-inspect --help"};
-  }
-  if (FLAGS_svg_out.empty() && FLAGS_json_out.empty()) return;
-  if (FLAGS_wave) throw Error{"--wave writes no files; leave --svg_out and --json_out out"};
-  for (const std::string& file : g_files) {
-    OrFail(CheckNotRead("the command line", file));
-  }
-  if (!FLAGS_svg_out.empty() && g_files.size() > 1) {
-    throw Error{"--svg_out draws one file, not " + std::to_string(g_files.size())};
-  }
-  OrFail(CheckOutputFiles({FLAGS_svg_out, FLAGS_json_out}));
-}
-
 int RunWaves() {
   std::vector<MeasuredWave> all;
   int outcome = kDone;
@@ -148,7 +133,17 @@ Screen ScreenOf(const Inspection& found) {
 }
 
 int Run() {
-  CheckFlags();
+  if (g_files.empty()) {
+    throw Error{"name one or more files to inspect; see pushid-inspect --help"};
+  }
+  if (!FLAGS_svg_out.empty() || !FLAGS_json_out.empty()) {
+    if (FLAGS_wave) throw Error{"--wave writes no files; leave --svg_out and --json_out out"};
+    for (const std::string& file : g_files) OrFail(CheckNotRead("the command line", file));
+  }
+  if (!FLAGS_svg_out.empty() && g_files.size() > 1) {
+    throw Error{"--svg_out draws one file, not " + std::to_string(g_files.size())};
+  }
+  OrFail(CheckOutputFiles({FLAGS_svg_out, FLAGS_json_out}));
   if (FLAGS_wave) return RunWaves();
   const ColumnMapping mapping =
       FLAGS_mapping.empty() ? ColumnMapping() : OrFail(ReadColumnMapping(FLAGS_mapping));
@@ -173,8 +168,7 @@ int Run() {
     OrFail(WriteFileAtomically(FLAGS_svg_out, InspectionSvg(found.value())));
     std::printf("  picture         %s\n", FLAGS_svg_out.c_str());
   }
-  if (FLAGS_json_out.empty()) return outcome;
-  OrFail(WriteJson(FLAGS_json_out, all, 1));
+  if (!FLAGS_json_out.empty()) OrFail(WriteJson(FLAGS_json_out, all, 1));
   return outcome;
 }
 

@@ -76,9 +76,8 @@ std::vector<SensorChoice> SensorsFromFlags() {
 void CheckSensors() {
   CheckNeeds(kOfOneSensor, "sensor", ": name the file of its forces");
   CheckNeeds({"estimate_offset"}, "sensor");
-  for (const std::string& flag : kOfOneSensor) {
-    if (!SensorsListed() || !Given(flag.c_str())) continue;
-    throw Error{"--" + flag + " is given in the list, " + FLAGS_sensor + "; leave it out"};
+  if (SensorsListed()) {
+    RefuseGiven(kOfOneSensor, " is given in the list, " + FLAGS_sensor + "; leave it out");
   }
   CheckRange("height", FLAGS_height, 0, 2);
 }
@@ -124,9 +123,8 @@ PushFlags PushFlagsFromCommandLine() {
   PushFlags flags;
   flags.ids = FLAGS_id.empty() ? SelectedIds() : std::vector{FLAGS_id};
   Require("out", FLAGS_out, "name the CSV file to write");
-  for (const char* flag : {"frames", "initial_velocity"}) {
-    if (FLAGS_sensor.empty() || !Given(flag)) continue;
-    throw Error{std::string("--") + flag + " applies to inverse dynamics, not to --sensor"};
+  if (!FLAGS_sensor.empty()) {
+    RefuseGiven({"frames", "initial_velocity"}, " applies to inverse dynamics, not to --sensor");
   }
   PushWindow& window = flags.window;
   char rest = 0;

@@ -79,28 +79,6 @@ std::string Place(const char* folder, const std::string& name, const char* rest 
   return (Json::json_pointer(folder) / name).to_string() + rest;
 }
 
-// A job's value of one parameter; nothing where it has none of that name.
-JobColumn OfParameter(const std::string& name, const char* ending, const char* key, bool words,
-                      JobCell (*cell)(const Estimate&)) {
-  const bool value = *ending == '\0';  // on the page error and status stand beside it
-  return {name + ending, Place("/parameters", name, key), value ? name : "", words,
-          [name, cell](const JobResult& row) {
-            const auto found = row.parameters.find(name);
-            return found == row.parameters.end() ? JobCell{} : cell(found->second);
-          }};
-}
-
-JobColumn HeldOutColumn(MetricId id) {
-  const Metric& metric = kMetrics[id];
-  return {"held_out_" + LowerCase(metric.name) + "_" + metric.unit,
-          Place("/held_out", metric.Key()),
-          std::string("held-out ") + metric.name + ", " + metric.unit, false,
-          [id](const JobResult& row) {
-            const double* const value = row.HeldOut(id);
-            return value != nullptr ? Number(*value, 3) : Nothing();
-          }};
-}
-
 // The columns in the order of summary.csv.
 std::vector<JobColumn> JobColumns(const std::vector<JobResult>& rows) {
   using Row = const JobResult&;
@@ -126,7 +104,14 @@ std::vector<JobColumn> JobColumns(const std::vector<JobResult>& rows) {
   }
   const auto of_parameters = [&](const char* ending, const char* key, bool words,
                                  JobCell (*cell)(const Estimate&)) {
-    for (const std::string& name : names) add(OfParameter(name, ending, key, words, cell));
+    const bool value = *ending == '\0';  // on the page error and status stand beside it
+    for (const std::string& name : names) {
+      add({name + ending, Place("/parameters", name, key), value ? name : "", words,
+           [name, cell](Row r) {
+             const auto found = r.parameters.find(name);
+             return found == r.parameters.end() ? Nothing() : cell(found->second);
+           }});
+    }
   };
   of_parameters("", "/value", false, [](const Estimate& e) {
     JobCell cell = Number(e.value, 4);
@@ -145,7 +130,14 @@ std::vector<JobColumn> JobColumns(const std::vector<JobResult>& rows) {
          const std::string text = r.settles ? "yes" : "no";
          return JobCell{text, text, r.settles};
        }});
-  for (MetricId metric : HeldOutMetrics(rows)) add(HeldOutColumn(metric));
+  for (MetricId id : HeldOutMetrics(rows)) {
+    const Metric& metric = kMetrics[id];
+    add({"held_out_" + LowerCase(metric.name) + "_" + metric.unit, Place("/held_out", metric.Key()),
+         std::string("held-out ") + metric.name + ", " + metric.unit, false, [id](Row r) {
+           const double* const value = r.HeldOut(id);
+           return value != nullptr ? Number(*value, 3) : Nothing();
+         }});
+  }
   add({"warnings", "/warnings", "warnings", false, [](Row r) {
          if (r.warnings.empty()) return Nothing();
          return JobCell{Joined(r.warnings, "; "), std::to_string(r.warnings.size()), r.warnings};

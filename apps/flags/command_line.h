@@ -46,6 +46,14 @@ void CheckExcludes(const std::vector<std::string>& flags, const std::string& oth
 // Whether a flag was given, even with its default's value.
 bool Given(const char* flag);
 
+// Throws "--FLAG WHY" for the first of these flags that is given. file: the one that refuses them.
+inline void RefuseGiven(const std::vector<std::string>& flags, const std::string& why,
+                        const std::string& file = "") {
+  for (const std::string& flag : flags) {
+    if (Given(flag.c_str())) throw Error{"--" + flag + why, file};
+  }
+}
+
 // Throws "--recordings is missing ..." when a flag that is needed is empty.
 void Require(const std::string& flag, const std::string& value, const std::string& what);
 

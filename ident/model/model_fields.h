@@ -113,37 +113,31 @@ PUSHID_FIELDS_OF(SubjectParameters, mass_kg, pooled)
 
 // The solve.
 
+// A warning that is of one recording.
+struct RecordingsWarning {
+  int warning = 0;  // its place in the list
+  std::string recording, of_many;
+};
+PUSHID_FIELDS_OF(RecordingsWarning, warning, recording, of_many)
+
 // The sentences, and beside them, under KEY_of_recordings, those that are of one recording.
 inline void WarningFields(JsonArchive& a, const std::string& key, Warnings& warnings) {
-  a.Via(
-      key.c_str(),
-      [&warnings] {
-        std::vector<std::string> texts;
-        for (const Warning& warning : warnings) texts.push_back(warning.text);
-        return texts;
-      },
-      [&warnings](const std::vector<std::string>& texts) {
-        warnings.assign(texts.begin(), texts.end());
-      });
-  std::vector<int> at;
-  std::vector<std::string> recording, of_many;
-  for (size_t i = 0; i < warnings.size(); ++i) {
-    if (warnings[i].recording.empty()) continue;
-    at.push_back(static_cast<int>(i));
-    recording.push_back(warnings[i].recording);
-    of_many.push_back(warnings[i].of_many);
+  std::vector<std::string> texts;
+  std::vector<RecordingsWarning> of_recordings;
+  for (const Warning& w : warnings) {
+    const int at = static_cast<int>(texts.size());
+    if (!w.recording.empty()) of_recordings.push_back({at, w.recording, w.of_many});
+    texts.push_back(w.text);
   }
-  const std::string of_recordings = key + "_of_recordings";
-  if (!a.Has(of_recordings.c_str(), !at.empty())) return;
-  a.Rows(of_recordings.c_str(), std::tie(at, recording, of_many), [&](auto& row, size_t i) {
-    row("warning", at[i], "recording", recording[i], "of_many", of_many[i]);
-    if (row.reads()) {
-      row.Check(0 <= at[i] && at[i] < static_cast<int>(warnings.size()),
-                "there is no such warning");
-      warnings[at[i]].recording = recording[i];
-      warnings[at[i]].of_many = of_many[i];
-    }
-  });
+  a(key.c_str(), texts);
+  a.Filled((key + "_of_recordings").c_str(), of_recordings);
+  if (!a.reads()) return;
+  warnings.assign(texts.begin(), texts.end());
+  for (const auto& [at, recording, of_many] : of_recordings) {
+    a.Check(0 <= at && at < static_cast<int>(warnings.size()), "there is no such warning");
+    warnings[at].recording = recording;
+    warnings[at].of_many = of_many;
+  }
 }
 
 PUSHID_FIELDS_OF(SolveStage, horizon, iterations, initial_cost, final_cost, converged)
