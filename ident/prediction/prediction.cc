@@ -22,7 +22,8 @@ namespace {
 void AddSteps(const IdentifiedModel& model, const PendulumRecording& recording,
               Prediction* prediction) {
   if (!model.step_probability) return;
-  for (double margin : StepMargins(model, recording, prediction->path)) {
+  for (double margin : StepMargins(model.options, PeoplesParameters(model, recording), recording,
+                                   prediction->path)) {
     prediction->steps.push_back(
         {margin, model.step_probability->At(margin), model.step_probability->ErrorAt(margin)});
   }
