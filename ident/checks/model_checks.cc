@@ -29,10 +29,12 @@ void ClassifyByDataAlone(const FitProblem& with, const FitPoint& estimate,
   if (CostAt(alone.WithoutRecordings(), estimate) == put_in) return;
   const SolveStart refit = Refit(alone, estimate);
   if (!refit.usable) return;
-  const auto found = ClassifyProfiles(alone, refit.to, ComputeUncertainty(alone, refit.to), names,
-                                      num_threads, progress);
+  const auto found = ComputeProfiles(alone, refit.to, ComputeUncertainty(alone, refit.to), names,
+                                     num_threads, progress, true);
   if (!found.ok()) return;
-  for (size_t i = 0; i < profiles->size(); ++i) (*profiles)[i].by_data_alone = found.value()[i];
+  for (size_t i = 0; i < profiles->size(); ++i) {
+    (*profiles)[i].by_data_alone = found.value()[i].classification;
+  }
 }
 
 }  // namespace

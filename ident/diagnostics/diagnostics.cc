@@ -1,11 +1,11 @@
-// ident: what the residuals of a fit say, recording by recording and lag by lag, and score tests of
-// terms that are held at zero.
+// ident: residuals by recording and by lag, leverage, and parameters without effect.
 #include "ident/diagnostics/diagnostics.h"
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/files/names.h"
 #include "datasets/files/random.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/residual_rows.h"
@@ -94,7 +94,9 @@ std::vector<RecordingDiagnostics> DiagnoseRecordings(const FitProblem& problem,
       built.problem->EvaluateResidualBlock(block.id, false, &cost, nullptr, nullptr);
       d.cost += cost;
     }
-    d.cost -= built.OffsetOf(g);
+    if (const auto offset = built.offsets.find(g); offset != built.offsets.end()) {
+      d.cost -= offset->second;
+    }
     const std::vector<double>& raw = all[g];
     if (!raw.empty()) {
       AddFrames(recording, raw, problem.options().sigmas, &d);
@@ -110,27 +112,34 @@ std::vector<RecordingDiagnostics> DiagnoseRecordings(const FitProblem& problem,
   return diagnostics;
 }
 
-std::vector<Whiteness> DiagnoseWhiteness(const FitProblem& problem, ResidualsByRecording raw) {
+std::vector<Whiteness> DiagnoseWhiteness(const FitProblem& problem,
+                                         const ResidualsByRecording& raw) {
   const auto& recordings = problem.recordings();
-  int lags = kLags, frames = 0, counted = 0, freedom = 0;
+  std::vector<size_t> seen;
+  int lags = kLags, frames = 0;
   for (size_t g = 0; g < recordings.size(); ++g) {
-    if (!recordings[g].IsSeen()) raw[g].clear();
-    if (raw[g].empty()) continue;
+    if (!recordings[g].IsSeen() || raw[g].empty()) continue;
+    seen.push_back(g);
     lags = std::min(lags, LagsOf(recordings[g]));
     frames += recordings[g].num_frames() - 1;
-    ++counted;
   }
   std::vector<Whiteness> all;
-  if (counted == 0) return all;
-  freedom = counted * lags;
+  if (seen.empty()) return all;
+  const auto means = [](const std::vector<std::vector<double>>& by_lag, std::vector<double>* mean,
+                        std::vector<double>* error) {
+    for (const std::vector<double>& values : by_lag) {
+      const MeanAndError m = MeanOf(values);
+      mean->push_back(m.mean);
+      error->push_back(m.error);
+    }
+  };
   for (const Channel& channel : kChannels) {
     Whiteness w;
     w.channel = channel.name;
-    w.band = 1.96 / std::sqrt(static_cast<double>(frames) / counted);
+    w.band = 1.96 / std::sqrt(static_cast<double>(frames) / static_cast<int>(seen.size()));
     w.mean_band = 1.96 / std::sqrt(static_cast<double>(frames));
     std::vector<std::vector<double>> self(lags), push(lags + 1);  // by lag, then recording
-    for (size_t g = 0; g < recordings.size(); ++g) {
-      if (raw[g].empty()) continue;
+    for (size_t g : seen) {
       const int person = recordings[g].pushed_person;
       const std::vector<double> series = Series(recordings[g], raw[g], person, channel.residual);
       const std::vector<double> r = Autocorrelation(series, lags);
@@ -140,17 +149,9 @@ std::vector<Whiteness> DiagnoseWhiteness(const FitProblem& problem, ResidualsByR
       for (int k = 0; k < lags; ++k) self[k].push_back(r[k]);
       for (int k = 0; k <= lags; ++k) push[k].push_back(c[k]);
     }
-    for (const std::vector<double>& at_lag : self) {
-      const MeanAndError m = MeanOf(at_lag);
-      w.autocorrelation.push_back(m.mean);
-      w.error.push_back(m.error);
-    }
-    for (const std::vector<double>& at_lag : push) {
-      const MeanAndError m = MeanOf(at_lag);
-      w.push.push_back(m.mean);
-      w.push_error.push_back(m.error);
-    }
-    w.ljung_box_p = ChiSquareTail(w.ljung_box, freedom);
+    means(self, &w.autocorrelation, &w.error);
+    means(push, &w.push, &w.push_error);
+    w.ljung_box_p = ChiSquareTail(w.ljung_box, static_cast<int>(seen.size()) * lags);
     all.push_back(w);
   }
   return all;
@@ -186,57 +187,23 @@ constexpr double kNoEffect = 1e-12;  // of the largest column, in typical sizes
 constexpr double kNearby = 2.0;      // factor of the second look
 constexpr uint64_t kNearbySeed = 7;  // fixed: the check is part of no random choice
 
-// Norms of the shared columns over the rows of data, per typical size of each parameter.
-std::vector<double> ColumnNorms(const FitProblem& problem, const FitPoint& point,
-                                const ResidualRows& score) {
-  std::vector<double> norms(point.shared.size(), 0.0);
-  for (size_t i = 0; i < norms.size(); ++i) {
-    const ParameterSpec& spec = problem.Spec(i);
-    const double natural = ToNatural(spec.transform, point.shared[i]);
-    const double unit = spec.scale / TransformSlope(spec.transform, natural);
-    for (Eigen::Index row = 0; row < score.residuals.size(); ++row) {
-      if (score.cluster_of_row[row] < 0) continue;
-      const double entry = unit * score.jacobian(row, static_cast<Eigen::Index>(i));
-      norms[i] += entry * entry;
-    }
-    norms[i] = std::sqrt(norms[i]);
-  }
-  return norms;
-}
-
+// Parameters whose column over the rows of data is zero, in their typical sizes.
 std::vector<std::string> WithoutEffect(const FitProblem& problem, const FitPoint& point,
                                        const ResidualRows& score) {
-  const std::vector<double> norms = ColumnNorms(problem, point, score);
-  double largest = 0.0;
-  for (double norm : norms) largest = std::max(largest, norm);
+  const std::vector<int> rows = score.RowsOfData();
+  std::vector<double> norms;
+  for (size_t i = 0; i < point.shared.size(); ++i) {
+    const ParameterSpec& spec = problem.Spec(i);
+    const double unit =
+        spec.scale / TransformSlope(spec.transform, ToNatural(spec.transform, point.shared[i]));
+    norms.push_back((unit * score.jacobian(rows, static_cast<Eigen::Index>(i))).norm());
+  }
+  const double largest = *std::max_element(norms.begin(), norms.end());
   std::vector<std::string> names;
   for (size_t i = 0; i < norms.size(); ++i) {
-    if (norms[i] > kNoEffect * largest) continue;
-    names.push_back(problem.Spec(i).name);
+    if (!(norms[i] > kNoEffect * largest)) names.push_back(problem.Spec(i).name);
   }
   return names;
-}
-
-// The recordings at the point where a solve starts.
-StartDiagnostics DiagnoseStart(const FitProblem& problem, const SolveStart& start) {
-  const ResidualRows score = EvaluateRows(problem, start.from);
-  const Conditioning at_start = ComputeConditioning(problem, start.from, score);
-  return {at_start.condition_number, at_start.null_directions,
-          WithoutEffect(problem, start.from, score), start.notes,
-          FitFindings(FindingsOf(problem.recordings()))};
-}
-
-// The nominal point with every free gain multiplied by kNearby^u, u uniform in [-1, 1].
-FitPoint NearbyPoint(const FitProblem& problem) {
-  Random random(kNearbySeed);
-  FitPoint point = problem.NominalPoint();
-  for (size_t i = 0; i < point.shared.size(); ++i) {
-    const Transform transform = problem.map().fitted[i].transform;
-    const double natural =
-        ToNatural(transform, point.shared[i]) * std::pow(kNearby, random.Uniform(-1.0, 1.0));
-    point.shared[i] = ToFitted(transform, natural);
-  }
-  return point;
 }
 
 }  // namespace
@@ -244,7 +211,11 @@ FitPoint NearbyPoint(const FitProblem& problem) {
 Diagnostics Diagnose(const FitProblem& problem, const SolveStart& best,
                      const Uncertainty& uncertainty) {
   Diagnostics d;
-  d.start = DiagnoseStart(problem, best);
+  const ResidualRows at_start = EvaluateRows(problem, best.from);
+  const Conditioning conditioning = ComputeConditioning(problem, best.from, at_start);
+  d.start = {conditioning.condition_number, conditioning.null_directions,
+             WithoutEffect(problem, best.from, at_start), best.notes,
+             FitFindings(FindingsOf(problem.recordings()))};
   const ResidualsByRecording raw = RawResiduals(problem, best.to);
   d.recordings = DiagnoseRecordings(problem, best.to, raw);
   d.whiteness = DiagnoseWhiteness(problem, raw);
@@ -256,12 +227,10 @@ Diagnostics Diagnose(const FitProblem& problem, const SolveStart& best,
 }
 
 bool TailCannotAct(const std::vector<PendulumRecording>& recordings) {
-  for (const PendulumRecording& recording : recordings) {
-    for (const ScenePush& push : recording.scene.pushes) {
-      if (push.kind != PushKind::kExternal) return false;
-    }
-  }
-  return true;
+  return std::all_of(recordings.begin(), recordings.end(), [](const PendulumRecording& r) {
+    return std::all_of(r.scene.pushes.begin(), r.scene.pushes.end(),
+                       [](const ScenePush& push) { return push.kind == PushKind::kExternal; });
+  });
 }
 
 void HoldUnusedTail(const std::vector<PendulumRecording>& recordings, FitOptions* options) {
@@ -277,25 +246,31 @@ MaybeError CheckEffects(const FitProblem& problem) {
   if (names.empty()) return std::nullopt;
   // A term may rest at the nominal values (a contact not reached, a network that begins without
   // any output) and act beside them.
-  FitPoint nearby = NearbyPoint(problem);
-  Random random(kNearbySeed);
-  for (double& weight : nearby.weights) weight += random.Uniform(-kNearbyWeight, kNearbyWeight);
+  FitPoint nearby = nominal;
+  Random random(kNearbySeed), of_weights(kNearbySeed);
+  for (size_t i = 0; i < nearby.shared.size(); ++i) {
+    const Transform transform = problem.Spec(i).transform;
+    nearby.shared[i] = ToFitted(transform, ToNatural(transform, nearby.shared[i]) *
+                                               std::pow(kNearby, random.Uniform(-1.0, 1.0)));
+  }
+  for (double& weight : nearby.weights) weight += of_weights.Uniform(-kNearbyWeight, kNearbyWeight);
   MoveOffBounds(problem, &nearby);
   const std::vector<std::string> still =
       WithoutEffect(problem, nearby, EvaluateRows(problem, nearby));
-  std::string list;
-  for (const std::string& name : names) {
-    if (std::find(still.begin(), still.end(), name) == still.end()) continue;
-    list += (list.empty() ? "" : ",") + name;
-  }
-  if (list.empty()) return std::nullopt;
+  names.erase(std::remove_if(names.begin(), names.end(),
+                             [&still](const std::string& name) {
+                               return std::find(still.begin(), still.end(), name) == still.end();
+                             }),
+              names.end());
+  if (names.empty()) return std::nullopt;
+  const std::string list = Joined(names, ",");
   const bool alone = std::all_of(problem.recordings().begin(), problem.recordings().end(),
                                  [](const PendulumRecording& r) { return r.num_people() == 1; });
   if (alone && problem.options().model.interaction.Any()) {
     return Error{"every recording has one person, and " + list +
                  " act only between people who touch; use --preset=tail"};
   }
-  return Error{list + (list.find(',') == std::string::npos ? " has" : " have") +
+  return Error{list + (names.size() == 1 ? " has" : " have") +
                " no effect on any of these recordings and cannot be fitted; use --fix=" + list};
 }
 

@@ -1,5 +1,5 @@
-// ident: what was looked at before and after the solve, as data: every table and plot of a report
-// is drawn from here.
+// ident: diagnostics before and after the solve, as data: every table and plot of a report is drawn
+// from here.
 #pragma once
 
 #include <string>
@@ -59,8 +59,8 @@ struct Whiteness {
   double ljung_box_p = 0.0;
 };
 
-// What leaving a recording out would move, by one step (covariance.h). Checked against real refits
-// in tests/ident/diagnostics/diagnostics_test.cc.
+// Moves when a recording is left out, by one step (covariance.h). Checked against real refits in
+// tests/ident/diagnostics/diagnostics_test.cc.
 struct Leverage {
   std::vector<std::string> recordings, parameters, units;
   std::vector<std::vector<double>> change;     // [recording][parameter], natural units
@@ -83,7 +83,7 @@ struct Diagnostics {
 // Whether every push is external, measured whole: then none has a tail.
 bool TailCannotAct(const std::vector<PendulumRecording>& recordings);
 
-// Holds the parameters of the tail where it cannot act, which no data could tell anything about.
+// Holds the parameters of the tail where it cannot act.
 void HoldUnusedTail(const std::vector<PendulumRecording>& recordings, FitOptions* options);
 
 // Free parameters that change no residual of the recordings, neither at the nominal values nor near

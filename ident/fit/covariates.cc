@@ -12,6 +12,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/fit/fit.h"
 #include "ident/problem/parallel.h"
+#include "ident/problem/statistics.h"
 #include "ident/uncertainty/contrast.h"
 #include "residuals/rollout_residual.h"
 
@@ -26,6 +27,22 @@ using Recordings = std::vector<PendulumRecording>;
 std::string Who(const PendulumRecording& recording, int person) {
   return "person " + Quoted(recording.subject_ids[person]) + " of recording " +
          Quoted(recording.id);
+}
+
+// each(recording, person) for everybody.
+template <typename Each>
+void ForPeople(const Recordings& recordings, const Each& each) {
+  for (const PendulumRecording& recording : recordings) {
+    for (int n = 0; n < recording.num_people(); ++n) each(recording, n);
+  }
+}
+
+// A key that nobody has; known: those that there are.
+Error NobodyHas(const std::string& option, const std::string& key, const std::string& what,
+                const std::set<std::string>& known) {
+  return Error{option + " " + Quoted(key) + ", a " + what + " has" +
+               Suggestion(key, {known.begin(), known.end()}) + "; there are " +
+               Listed({known.begin(), known.end()}, ",")};
 }
 
 class SlopeRows {
@@ -50,16 +67,16 @@ class SlopeRows {
     const bool plain = of.transform == Transform::kIdentity;
     const std::string per = covariate.is_contrast() ? "" : " per " + covariate.key;
     const std::string unit = (plain ? of.unit : "1") + per;
-    ParameterFacts facts;
-    facts.name = name;
-    facts.unit = unit;
-    facts.scale = (plain ? of.scale : 1.0) / spread;
-    facts.lower = -kSlopeBound * facts.scale;
-    facts.upper = kSlopeBound * facts.scale;
     const std::string meaning =
         (plain ? "difference of " : "logarithm of the ratio of ") + of.name +
         (covariate.is_contrast() ? ", " + covariate.second + " to " + covariate.first : per);
+    ParameterFacts facts;
+    facts.name = name;
+    facts.unit = unit;
     facts.meaning = meaning;
+    facts.scale = (plain ? of.scale : 1.0) / spread;
+    facts.lower = -kSlopeBound * facts.scale;
+    facts.upper = kSlopeBound * facts.scale;
     ParameterSpec& row = table_.Add(facts);
     row.free = true;
     row.slope_of = ParameterSpec::SlopeOf{target, covariate};
@@ -97,31 +114,26 @@ class SlopeRows {
     }
     std::set<double> distinct;
     std::map<std::string, std::vector<double>> of_people;
-    std::optional<Error> lacking;
-    for (const PendulumRecording& recording : recordings_) {
-      for (int n = 0; n < recording.num_people(); ++n) {
-        const std::optional<double> number = NumberOf(recording, n, key);
-        if (number) {
-          distinct.insert(*number);
-          of_people[recording.subject_ids[n]].push_back(*number);
-        } else if (!lacking) {
-          lacking = Error{"--covariate names " + key + ", which is not known of " +
-                          Who(recording, n) + "; give it as a number in the manifest's subjects"};
-        }
-      }
-    }
+    std::string lacking;
+    ForPeople(recordings_, [&](const PendulumRecording& recording, int n) {
+      const std::optional<double> number = NumberOf(recording, n, key);
+      if (!number && lacking.empty()) lacking = Who(recording, n);
+      if (!number) return;
+      distinct.insert(*number);
+      of_people[recording.subject_ids[n]].push_back(*number);
+    });
     if (of_people.empty()) {
       std::set<std::string> known = {kMassCovariate, kRodCovariate};
-      for (const PendulumRecording& recording : recordings_) {
-        for (const PersonFacts& facts : recording.known) {
-          for (const auto& [name, value] : facts.numbers) known.insert(name);
-        }
-      }
-      return Error{"--covariate names " + Quoted(key) + ", a number that nobody has" +
-                   Suggestion(key, {known.begin(), known.end()}) + "; there are " +
-                   Listed({known.begin(), known.end()}, ",")};
+      ForPeople(recordings_, [&known](const PendulumRecording& recording, int n) {
+        if (recording.known.empty()) return;
+        for (const auto& [name, value] : recording.known[n].numbers) known.insert(name);
+      });
+      return NobodyHas("--covariate names", key, "number that nobody", known);
     }
-    if (lacking) return lacking;
+    if (!lacking.empty()) {
+      return Error{"--covariate names " + key + ", which is not known of " + lacking +
+                   "; give it as a number in the manifest's subjects"};
+    }
     if (std::min(distinct.size(), of_people.size()) < kLeastDistinctValues) {
       return Error{"--covariate names " + key + ", which has " + std::to_string(distinct.size()) +
                    " distinct value" + (distinct.size() == 1 ? "" : "s") + " among " +
@@ -129,15 +141,11 @@ class SlopeRows {
                    (of_people.size() == 1 ? " person" : " people") + "; a slope needs at least " +
                    std::to_string(kLeastDistinctValues) + " of both"};
     }
+    std::vector<double> means;
+    for (const auto& [person, values] : of_people) means.push_back(MeanOf(values).mean);
     Covariate covariate;
     covariate.key = key;
-    std::vector<double> means;
-    for (const auto& [person, values] : of_people) {
-      double mean = 0.0;
-      for (double value : values) mean += value / static_cast<double>(values.size());
-      means.push_back(mean);
-      covariate.centre += mean / static_cast<double>(of_people.size());
-    }
+    covariate.centre = MeanOf(means).mean;
     double squares = 0.0;
     for (double mean : means) squares += (mean - covariate.centre) * (mean - covariate.centre);
     const double spread = std::sqrt(squares / static_cast<double>(means.size() - 1));
@@ -150,18 +158,12 @@ class SlopeRows {
  private:
   Result<Covariate> ContrastBetween(const std::string& label) const {
     std::set<std::string> values;
-    std::optional<Error> lacking;
-    for (const PendulumRecording& recording : recordings_) {
-      for (int n = 0; n < recording.num_people(); ++n) {
-        const std::string value = LabelOf(recording, n, label);
-        if (!value.empty()) {
-          values.insert(value);
-        } else if (!lacking) {
-          lacking = Error{"--contrast is " + Quoted(label) + ", a label that " + Who(recording, n) +
-                          " lacks; give it in the manifest, or leave the recording out"};
-        }
-      }
-    }
+    std::string lacking;
+    ForPeople(recordings_, [&](const PendulumRecording& recording, int n) {
+      const std::string value = LabelOf(recording, n, label);
+      if (!value.empty()) values.insert(value);
+      if (value.empty() && lacking.empty()) lacking = Who(recording, n);
+    });
     if (values.empty()) {
       std::set<std::string> known;
       for (const PendulumRecording& recording : recordings_) {
@@ -170,11 +172,12 @@ class SlopeRows {
           for (const auto& [key, text] : facts.texts) known.insert(key);
         }
       }
-      return Error{"--contrast is " + Quoted(label) + ", a label that no recording or person has" +
-                   Suggestion(label, {known.begin(), known.end()}) + "; there are " +
-                   Listed({known.begin(), known.end()}, ",")};
+      return NobodyHas("--contrast is", label, "label that no recording or person", known);
     }
-    if (lacking) return *lacking;
+    if (!lacking.empty()) {
+      return Error{"--contrast is " + Quoted(label) + ", a label that " + lacking +
+                   " lacks; give it in the manifest, or leave the recording out"};
+    }
     if (values.size() != 2) {
       return Error{"--contrast compares the two values of a label, and " + label + " has " +
                    std::to_string(values.size()) + " (" +
@@ -190,12 +193,11 @@ class SlopeRows {
 
   // Whether nobody shares a recording with somebody of the other value.
   bool SharedByRecording(const std::string& label) const {
-    for (const PendulumRecording& recording : recordings_) {
-      for (int n = 1; n < recording.num_people(); ++n) {
-        if (LabelOf(recording, n, label) != LabelOf(recording, 0, label)) return false;
-      }
-    }
-    return true;
+    bool shared = true;
+    ForPeople(recordings_, [&](const PendulumRecording& recording, int n) {
+      shared = shared && LabelOf(recording, n, label) == LabelOf(recording, 0, label);
+    });
+    return shared;
   }
 
   const Recordings& recordings_;
@@ -206,38 +208,14 @@ class SlopeRows {
 // A label that is compared is not pooled by as well: deviations would take part of the difference.
 void UnpoolLabel(FitOptions* options, Warnings* told) {
   if (options->contrast.empty() || options->pool_by != options->contrast) return;
-  std::string names;
+  std::vector<std::string> names;
   for (ParameterSpec& spec : options->table.specs) {
-    if (!spec.pooled) continue;
+    if (spec.pooled && spec.free) names.push_back(spec.name);
     spec.pooled = false;
-    if (spec.free) names += (names.empty() ? "" : ", ") + spec.name;
   }
   if (names.empty()) return;
-  told->push_back("--contrast=" + options->contrast + " compares " + names +
+  told->push_back("--contrast=" + options->contrast + " compares " + Joined(names) +
                   ", which would be pooled by the same label: not pooled");
-}
-
-// The recordings of everybody with each value of the label; empty where people share recordings.
-using ByPersonAndValue = std::map<std::pair<std::string, std::string>, Recordings>;
-ByPersonAndValue Apart(const Recordings& recordings, const std::string& label) {
-  ByPersonAndValue apart;
-  for (const PendulumRecording& recording : recordings) {
-    if (recording.num_people() != 1) return {};
-    apart[{recording.subject_ids[0], LabelOf(recording, 0, label)}].push_back(recording);
-  }
-  return apart;
-}
-
-// Options for people one by one: as of the joint fit, without slopes, pools and its deviations.
-FitOptions OfOnePerson(FitOptions options) {
-  options.contrast.clear();
-  options.num_threads = 1;
-  options.start_deviations.clear();
-  for (ParameterSpec& spec : options.table.specs) {
-    spec.pooled = false;
-    if (spec.slope_of) spec.free = false;
-  }
-  return options;
 }
 
 }  // namespace
@@ -273,9 +251,23 @@ void JudgeContrastByPeople(const std::vector<PendulumRecording>& recordings, Fit
   const FitOptions& fitted = result->options;
   if (!fitted.covariates.empty() || fitted.likelihood != Likelihood::kTrajectory) return;
   Contrast& contrast = *result->contrast;
-  const ByPersonAndValue apart = Apart(recordings, contrast.label);
-  if (apart.empty()) return;
-  const FitOptions options = OfOnePerson(fitted);
+  // The recordings of everybody with each value of the label.
+  using ByPersonAndValue =
+      std::map<std::pair<std::string, std::string>, std::vector<PendulumRecording>>;
+  ByPersonAndValue apart;
+  for (const PendulumRecording& recording : recordings) {
+    if (recording.num_people() != 1) return;
+    apart[{recording.subject_ids[0], LabelOf(recording, 0, contrast.label)}].push_back(recording);
+  }
+  // As of the joint fit, without slopes, pools and its deviations.
+  FitOptions options = fitted;
+  options.contrast.clear();
+  options.num_threads = 1;
+  options.start_deviations.clear();
+  for (ParameterSpec& spec : options.table.specs) {
+    spec.pooled = false;
+    if (spec.slope_of) spec.free = false;
+  }
   const std::vector<ByPersonAndValue::value_type> people(apart.begin(), apart.end());
   std::vector<std::optional<Result<IdentifiedModel>>> own(people.size());
   ParallelFor(static_cast<int>(people.size()), fitted.num_threads,

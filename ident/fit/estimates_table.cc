@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/inspection/inspection.h"
 #include "ident/model/model_rollout.h"
@@ -16,12 +17,6 @@
 
 namespace pushid {
 namespace {
-
-std::map<std::string, Estimate>& PooledOf(const std::string& unit, const FitProblem& problem,
-                                          FitResult* result) {
-  const bool settings = HoldsForRecording(problem.options().pool_by);
-  return settings ? result->settings[unit] : result->subjects[unit].pooled;
-}
 
 // Errors of the sum of estimates a and b, a shared value and a deviation from it.
 void AddErrors(const Uncertainty& u, int a, int b, const ParameterSpec& spec, Estimate* sum) {
@@ -56,10 +51,9 @@ std::vector<Estimate> TableOfEstimates(const FitProblem& problem,
       continue;
     }
     // Self-force terms that are zero are left out too, but for the convention of mu and Kp.
-    const bool convention = HeldByConvention(spec.id);
     const bool zero = spec.id < kTailGain && values[spec.id] == 0.0;
-    const bool acts = Acts(spec.id, options.model) && !spec.tied_to && (!zero || convention);
-    if (!acts) continue;
+    if (!Acts(spec.id, options.model) || spec.tied_to) continue;
+    if (zero && !HeldByConvention(spec.id)) continue;
     Estimate fixed;
     fixed.name = spec.name;
     fixed.unit = spec.unit;
@@ -89,36 +83,28 @@ std::vector<Combination> TableOfCombinations(const FitProblem& problem, const Fi
   return derived;
 }
 
-void AddUnits(const FitProblem& problem, const FitPoint& point, FitResult* result) {
+void AddUnits(const FitProblem& problem, const FitPoint& point, const Uncertainty* u,
+              FitResult* result) {
   for (const PendulumRecording& recording : problem.recordings()) {
     for (int n = 0; n < recording.num_people(); ++n) {
       result->subjects[recording.subject_ids[n]].mass_kg = recording.scene.people[n].body.mass;
     }
   }
+  const bool settings = HoldsForRecording(problem.options().pool_by);
+  int first = static_cast<int>(point.shared.size());
   for (const auto& [unit, deviations] : point.unit) {
     const ParameterSet<double> values = problem.Parameters(point, unit);
-    std::map<std::string, Estimate>& pooled = PooledOf(unit, problem, result);
-    for (const FittedParameter& f : problem.map().fitted) {
-      if (f.deviation < 0) continue;
-      const ParameterSpec& spec = problem.options().table[f.parameter];
+    std::map<std::string, Estimate>& pooled =
+        settings ? result->settings[unit] : result->subjects[unit].pooled;
+    for (size_t i = 0; i < problem.map().fitted.size(); ++i) {
+      const int deviation = problem.map().fitted[i].deviation;
+      if (deviation < 0) continue;
+      const ParameterSpec& spec = problem.Spec(i);
       Estimate& e = pooled[spec.name];
       e.name = spec.name;
       e.unit = spec.unit;
       e.value = values[spec.id];
-    }
-  }
-}
-
-void AddUnitErrors(const FitProblem& problem, const FitPoint& point, FitResult* result) {
-  const auto& fitted = problem.map().fitted;
-  int first = static_cast<int>(point.shared.size());
-  for (const auto& [unit, deviations] : point.unit) {
-    std::map<std::string, Estimate>& pooled = PooledOf(unit, problem, result);
-    for (size_t i = 0; i < fitted.size(); ++i) {
-      if (fitted[i].deviation < 0) continue;
-      const ParameterSpec& spec = problem.Spec(i);
-      AddErrors(result->uncertainty, static_cast<int>(i), first + fitted[i].deviation, spec,
-                &pooled[spec.name]);
+      if (u != nullptr) AddErrors(*u, static_cast<int>(i), first + deviation, spec, &e);
     }
     first += static_cast<int>(deviations.size());
   }
@@ -180,11 +166,11 @@ void AddClusterWarning(const Uncertainty& u, Warnings* warnings) {
 // Fewer line-ups do not tell how far others would differ.
 constexpr size_t kFewLineUps = 4;
 
-// What people do to each other is seen of each line-up once, however often it was pushed.
+// Forces between people are seen of each line-up once, however often it was pushed.
 void AddLineUpWarning(const FitProblem& problem, Warnings* warnings) {
-  std::string names;
-  for (const ParameterSpec& spec : problem.options().table.specs) {
-    if (spec.free && IsPairParameter(spec.id)) names += (names.empty() ? "" : ", ") + spec.name;
+  std::vector<std::string> names;
+  for (Parameter id : problem.options().table.Free()) {
+    if (IsPairParameter(id)) names.push_back(problem.options().table[id].name);
   }
   std::set<std::vector<std::string>> line_ups;
   for (const PendulumRecording& recording : problem.recordings()) {
@@ -193,15 +179,15 @@ void AddLineUpWarning(const FitProblem& problem, Warnings* warnings) {
     if (people.size() > 1) line_ups.insert(people);
   }
   if (names.empty() || line_ups.empty() || line_ups.size() >= kFewLineUps) return;
+  const std::string from =
+      line_ups.size() == 1 ? "one line-up" : std::to_string(line_ups.size()) + " line-ups";
   warnings->emplace_back(
-      names +
-      (line_ups.size() == 1
-           ? " come from one line-up of people"
-           : " come from " + std::to_string(line_ups.size()) + " line-ups of people") +
-      ", fewer than four: how far others differ is not known; read the columns of these people");
+      Joined(names) + " come from " + from +
+      " of people, fewer than four: how far others differ is not known; read the columns of these "
+      "people");
 }
 
-// What the demand to settle did, if anything.
+// The effect of the demand to settle, if any.
 void AddSettlingWarning(const Uncertainty& u, const ModelOptions& model, size_t shared,
                         Warnings* warnings) {
   const SettlingDemand& s = u.settling;
@@ -221,25 +207,23 @@ void AddSettlingWarning(const Uncertainty& u, const ModelOptions& model, size_t 
                            Rounded(s.rise, 2) + "), and the constraint was dropped");
     return;
   }
-  std::string moved, held;
+  std::vector<std::string> moved, held;
   for (size_t i = 0; i < shared; ++i) {
     const Estimate& e = u.estimates[i];
     const double pull = e.standard_error > 0.0 ? e.shares.settling_pull / e.standard_error : 0.0;
     if (std::abs(pull) < kPullToTell || !std::isfinite(pull)) continue;
     if (e.shares.settling > kHeldByDemand) {  // its error says nothing of the data
-      held += (held.empty() ? "" : ", ") + e.name;
-      continue;
+      held.push_back(e.name);
+    } else {
+      moved.push_back(e.name + " by " + (pull > 0.0 ? "+" : "") + Rounded(pull, 2));
     }
-    moved +=
-        (moved.empty() ? "" : ", ") + e.name + " by " + (pull > 0.0 ? "+" : "") + Rounded(pull, 2);
   }
-  std::string what = moved.empty() ? "" : moved + " standard errors";
-  if (!held.empty()) {
-    what += (what.empty() ? "" : ", and ") + held + " to where nothing else holds it";
-  }
-  if (what.empty()) what = "no parameter by half a standard error";
+  std::vector<std::string> what;
+  if (!moved.empty()) what.push_back(Joined(moved) + " standard errors");
+  if (!held.empty()) what.push_back(Joined(held) + " to where nothing else holds it");
+  if (what.empty()) what = {"no parameter by half a standard error"};
   warnings->emplace_back(wanted + "; the settling constraint (" + WaitText(model) + ") moved " +
-                         what);
+                         Joined(what, ", and "));
 }
 
 }  // namespace

@@ -19,10 +19,9 @@ std::vector<Combination> TableOfCombinations(const FitProblem& problem, const Fi
                                              const Uncertainty& uncertainty);
 
 // Masses of the people, and the pooled parameters of every unit: shared value and deviation
-// together.
-void AddUnits(const FitProblem& problem, const FitPoint& point, FitResult* result);
-// Their errors, of a result whose uncertainty is known.
-void AddUnitErrors(const FitProblem& problem, const FitPoint& point, FitResult* result);
+// together; with errors where their uncertainty is known (else null).
+void AddUnits(const FitProblem& problem, const FitPoint& point, const Uncertainty* uncertainty,
+              FitResult* result);
 
 // Cost of every recording at the optimum, and where its rollout failed.
 std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const SolveStart& best,

@@ -37,9 +37,9 @@ double Change(double from, double to) {
   return from > 0.0 && to > 0.0 ? std::abs(std::log(to / from)) : 1.0;
 }
 
-// What the problem's parts weigh by what is known at a point, and the recordings' sums by these
-// weights; the largest relative change.
-double Reweigh(FitProblem problem, const FitPoint& point, CostWeights* weights,
+// The weights of the problem's parts by what is known at a point, and the recordings' sums by these
+// weights; returns the largest relative change.
+double Reweigh(FitProblem problem, const FitPoint& point, FitOptions* weights,
                RecordingSums* recordings) {
   const FitOptions options = problem.options();
   double change = 0.0;
@@ -61,25 +61,12 @@ double Reweigh(FitProblem problem, const FitPoint& point, CostWeights* weights,
   return std::max(change, UpdatePoolingSpread(problem, point, weights));
 }
 
-// Optima on the way to the final one need not be exact.
-FitProblem WithRoughTolerance(FitProblem problem) {
-  problem.set_function_tolerance(std::max(kRough, problem.options().function_tolerance));
-  return problem;
-}
-
-// For solves between two estimates of the weights.
-FitProblem WithFewIterations(const FitProblem& problem) {
-  FitProblem rough = WithRoughTolerance(problem);
-  const FitOptions& options = problem.options();
-  if (options.model.learned == nullptr) {
-    rough.set_max_iterations(std::min(kFewIterations, options.max_iterations));
-  }
-  return rough;
-}
-
-// For solves with a share of a demand.
-FitProblem WithLooserTolerance(FitProblem problem) {
-  problem.set_function_tolerance(kLessExact * problem.options().function_tolerance);
+// For optima on the way to the final one, which need not be exact.
+FitProblem Roughly(FitProblem problem, double tolerance,
+                   int iterations = std::numeric_limits<int>::max()) {
+  FitOptions& options = *problem.mutable_options();
+  options.function_tolerance = std::max(tolerance, options.function_tolerance);
+  options.max_iterations = std::min(iterations, options.max_iterations);
   return problem;
 }
 
@@ -93,21 +80,19 @@ std::vector<FailedRollout> FailuresAfter(const FitProblem& problem, const SolveS
 void SolveOn(const FitProblem& problem, SolveStart* start) {
   SolveStart again =
       Refit(problem, start->to, problem.options().num_threads, std::move(start->recordings));
-  start->stages.insert(start->stages.end(), again.stages.begin(), again.stages.end());
-  start->iterations += again.iterations;
+  for (const SolveStage& stage : again.stages) start->Add(stage);
   start->to = std::move(again.to);
   start->recordings = std::move(again.recordings);
-  start->cost = again.cost;
-  start->converged = again.converged;
   start->message = std::move(again.message);
 }
 
 // Solves and estimates the weights in turns: with a rough tolerance until the weights settle, then
 // exactly until they settle again. False where they do not.
 bool SolveAndReweigh(FitProblem* problem, SolveStart* start) {
+  const bool network = problem->options().model.learned != nullptr;
   bool exact = false;
   for (int round = 0; round < kMostRounds; ++round) {
-    CostWeights now = problem->weights();
+    FitOptions now = problem->options();
     RecordingSums recordings;
     const bool settled = Reweigh(*problem, start->to, &now, &recordings) < kSettled;
     if (settled && exact) return true;
@@ -116,7 +101,9 @@ bool SolveAndReweigh(FitProblem* problem, SolveStart* start) {
       problem->SetWeights(now);
       start->recordings = std::move(recordings);
     }
-    SolveOn(exact ? *problem : WithFewIterations(*problem), start);
+    const FitProblem rough =
+        Roughly(*problem, kRough, network ? problem->options().max_iterations : kFewIterations);
+    SolveOn(exact ? *problem : rough, start);
   }
   if (!exact) SolveOn(*problem, start);
   return false;
@@ -138,11 +125,12 @@ SolveStart SolveHeld(const FitProblem& demanding, const SolveStart& free) {
   FitProblem part = demanding;
   SolveStart held = free;
   for (double share : kDemandSteps) {
-    part.set_settling_weight(share * demanding.options().settling_weight);
+    part.mutable_options()->settling_weight = share * demanding.options().settling_weight;
     if (share == kDemandSteps[0] && std::isinf(CostAt(part.WithoutRecordings(), free.to))) {
-      held = SolveFrom(WithRoughTolerance(part), part.NominalPoint(), "nominal", nullptr);
+      held = SolveFrom(Roughly(part, kRough), part.NominalPoint(), "nominal", nullptr);
     } else {
-      SolveOn(share < 1.0 ? WithLooserTolerance(part) : part, &held);
+      const double exact = part.options().function_tolerance;
+      SolveOn(Roughly(part, share < 1.0 ? kLessExact * exact : exact), &held);
     }
   }
   held.failed = FailuresAfter(demanding, held);
@@ -153,7 +141,7 @@ SolveStart SolveHeld(const FitProblem& demanding, const SolveStart& free) {
 void Demand(double weight, FitProblem* problem, WeightedSolution* solved) {
   SolveStart& best = solved->solution.start;
   const FitProblem without = *problem;
-  problem->set_settling_weight(weight);
+  problem->mutable_options()->settling_weight = weight;
   const FitProblem demands = problem->WithoutRecordings();
   if (CostAt(demands, best.to) == CostAt(without.WithoutRecordings(), best.to)) return;
   SolveStart held = SolveHeld(*problem, best);
@@ -171,7 +159,7 @@ void Demand(double weight, FitProblem* problem, WeightedSolution* solved) {
                      SlowestSeconds(*problem, held.to) > WaitSeconds(problem->options().model);
   }
   if (!settling.holds()) {
-    problem->set_settling_weight(0.0);
+    problem->mutable_options()->settling_weight = 0.0;
     return;
   }
   solved->free = best.to;
@@ -184,17 +172,17 @@ void Demand(double weight, FitProblem* problem, WeightedSolution* solved) {
 WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progress) {
   const double begin = Now();
   const double weight = problem->options().settling_weight;
-  problem->set_settling_weight(0.0);
+  problem->mutable_options()->settling_weight = 0.0;
   WeightedSolution solved;
   Solution& solution = solved.solution;
-  solution = Solve(WithRoughTolerance(*problem), progress);
+  solution = Solve(Roughly(*problem, kRough), progress);
   solved.work.Add("starts and horizons");
   if (!solution.ok()) {
-    problem->set_settling_weight(weight);
+    problem->mutable_options()->settling_weight = weight;
     return solved;
   }
   SolveStart& best = solution.start;
-  solved.weights_settled = SolveAndReweigh(problem, &best);
+  solution.settled = SolveAndReweigh(problem, &best);
   best.failed = FailuresAfter(*problem, best);
   solved.work.Add("weights");
   Demand(weight, problem, &solved);
@@ -208,10 +196,8 @@ WeightedSolution SolveFit(FitProblem* problem, const SolveProgress& progress) {
   if (problem->options().likelihood == Likelihood::kTrajectory) {
     return SolveWeighted(problem, progress);
   }
-  LikelihoodSolution by_steps = SolveByLikelihood(problem, progress);
   WeightedSolution solved;
-  solved.solution = std::move(by_steps.solution);
-  solved.weights_settled = by_steps.stays;
+  solved.solution = SolveByLikelihood(problem, progress);
   solved.work.Add("likelihood");
   return solved;
 }
@@ -227,8 +213,7 @@ struct SolvedFit {
   const SolveStart& Best() const { return solved.solution.start; }
 };
 
-// What judging and folds have in common. Errors: a large network's training fails; without a usable
-// optimum the result is not ok().
+// Errors: a large network's training fails; without a usable optimum the result is not ok().
 Result<SolvedFit> SetUpAndSolve(const std::vector<PendulumRecording>& recordings,
                                 const FitOptions& options, const SolveProgress& progress) {
   const bool trains = NeedsGradientTraining(options);
@@ -238,15 +223,14 @@ Result<SolvedFit> SetUpAndSolve(const std::vector<PendulumRecording>& recordings
   SolvedFit fit{FitProblem(recordings, trained.value()), {}};
   // By given weights, what was trained together is an optimum of it all already.
   if (trains && !options.estimate_weights) {
-    fit.problem.set_gradient_tolerance(std::numeric_limits<double>::infinity());
+    fit.problem.mutable_options()->gradient_tolerance = std::numeric_limits<double>::infinity();
   }
   fit.solved = SolveFit(&fit.problem, progress);
-  fit.problem.set_gradient_tolerance(options.gradient_tolerance);
+  fit.problem.mutable_options()->gradient_tolerance = options.gradient_tolerance;
   return fit;
 }
 
-// What the solve alone says, before any judgement: the parameters as they act, and what the fitted
-// people do after a push.
+// Before any judgement: the parameters as they act, and the fitted people's behaviour.
 FitResult ResultOf(const SolvedFit& fit) {
   const Solution& solution = fit.solved.solution;
   FitResult result;
@@ -265,50 +249,8 @@ FitResult ResultOf(const SolvedFit& fit) {
   result.options.model = fit.problem.ModelAt(best.to);
   result.parameters = fit.problem.Parameters(best.to, "");
   result.behaviour = fit.problem.BehaviourAt(best.to);
-  AddUnits(fit.problem, best.to, &result);
+  AddUnits(fit.problem, best.to, nullptr, &result);
   return result;
-}
-
-// What predictions need to know of the recordings.
-void AddFittedTo(const std::vector<PendulumRecording>& recordings, FitResult* result) {
-  if (const PushedFeet feet = FeetOf(recordings); feet.seen > 0) result->feet = feet;
-  result->push_range = FittedPushRange(ModelOf(*result), recordings);
-  const auto steps = FitStepProbability(ModelOf(*result), recordings);
-  if (steps && steps->stepped > 0 && steps->stepped < steps->tracks) {
-    result->step_probability = steps;
-  }
-}
-
-void AddWarnings(const SolvedFit& fit, FitResult* result) {
-  Warnings& warnings = result->warnings;
-  warnings = FitWarnings(fit.problem, *result);
-  if (fit.solved.weights_settled) return;
-  warnings.emplace_back(
-      result->options.likelihood == Likelihood::kTrajectory
-          ? "the weight of the data still changed by more than 1 % in the last round of "
-            "reweighting: priors may have too much or too little weight"
-          : "the likelihood still increased in the last round of solving");
-}
-
-// The covariance of a network's weights has no meaning for a reader and fills files: from here on
-// the covariance is that of everything else, whatever the weights are. Bands draw from it with the
-// weights as they are fitted, and so may be too wide where a network trades with a gain.
-void DropNetworkWeights(Eigen::Index weights, FitResult* result) {
-  if (weights == 0) return;
-  Uncertainty& u = result->uncertainty;
-  const Eigen::Index size = u.covariance.rows() - weights;
-  u.covariance = u.covariance.topLeftCorner(size, size).eval();
-  u.correlation = u.correlation.topLeftCorner(size, size).eval();
-  u.estimates.resize(size);
-  result->nuisance.resize(result->nuisance.size() - weights);
-}
-
-std::optional<IdentifiedModel> SolvedWithout(const std::vector<PendulumRecording>& recordings,
-                                             const FitOptions& options,
-                                             const std::vector<int>& held_out) {
-  Result<IdentifiedModel> model = SolveModel(Without(recordings, held_out), options);
-  if (!model.ok()) return std::nullopt;
-  return std::move(model.value());
 }
 
 FitResult Judge(const SolvedFit& fit) {
@@ -334,12 +276,18 @@ FitResult Judge(const SolvedFit& fit) {
   result.nuisance.assign(result.uncertainty.estimates.begin() + problem.map().num_shared(),
                          result.uncertainty.estimates.end());
   result.derived = TableOfCombinations(problem, optimum, result.uncertainty);
-  AddUnitErrors(problem, optimum, &result);
+  AddUnits(problem, optimum, &result.uncertainty, &result);
   result.contrast = ContrastAt(problem, optimum, result.uncertainty);
 
   // The recordings that it was fitted to: their pushes and steps.
   work.Add("tables");
-  AddFittedTo(problem.recordings(), &result);
+  const std::vector<PendulumRecording>& recordings = problem.recordings();
+  if (const PushedFeet feet = FeetOf(recordings); feet.seen > 0) result.feet = feet;
+  result.push_range = FittedPushRange(ModelOf(result), recordings);
+  const auto steps = FitStepProbability(ModelOf(result), recordings);
+  if (steps && steps->stepped > 0 && steps->stepped < steps->tracks) {
+    result.step_probability = steps;
+  }
   work.Add("steps");
 
   // Residuals: what the model leaves unexplained, recording by recording.
@@ -352,32 +300,31 @@ FitResult Judge(const SolvedFit& fit) {
   work.Add("diagnostics");
 
   // Warnings; and what a model keeps of its covariance.
-  AddWarnings(fit, &result);
+  result.warnings = FitWarnings(problem, result);
+  if (!fit.solved.solution.settled) {
+    result.warnings.emplace_back(
+        result.options.likelihood == Likelihood::kTrajectory
+            ? "the weight of the data still changed by more than 1 % in the last round of "
+              "reweighting: priors may have too much or too little weight"
+            : "the likelihood still increased in the last round of solving");
+  }
   result.work = work.parts();
-  DropNetworkWeights(static_cast<Eigen::Index>(optimum.weights.size()), &result);
+  if (optimum.weights.empty()) return result;
+  // The covariance of a network's weights has no meaning for a reader and fills files: from here on
+  // the covariance is that of everything else, whatever the weights are. Bands draw from it with
+  // the weights as they are fitted, and so may be too wide where a network trades with a gain.
+  Uncertainty& u = result.uncertainty;
+  const Eigen::Index size = u.covariance.rows() - static_cast<Eigen::Index>(optimum.weights.size());
+  u.covariance = u.covariance.topLeftCorner(size, size).eval();
+  u.correlation = u.correlation.topLeftCorner(size, size).eval();
+  u.estimates.resize(size);
+  result.nuisance.resize(result.nuisance.size() - optimum.weights.size());
   return result;
 }
 
 constexpr size_t kFolds = 4, kFewestUnits = 3;
 // Function tolerance: what a smaller one would change is little beside what people differ by.
 constexpr double kFoldTolerance = 1e-5;
-
-std::vector<std::vector<int>> FoldsOf(const FitProblem& problem) {
-  std::vector<std::vector<int>> units =
-      MakeResamplingUnits(problem.recordings(), ClusterBy::kAuto).units;
-  if (units.size() < kFewestUnits) {
-    units.clear();
-    for (size_t i = 0; i < problem.recordings().size(); ++i) units.push_back({static_cast<int>(i)});
-  }
-  std::vector<std::vector<int>> folds;
-  if (units.size() < kFewestUnits) return folds;
-  folds.resize(std::min(kFolds, units.size()));
-  for (size_t u = 0; u < units.size(); ++u) {
-    std::vector<int>& fold = folds[u % folds.size()];
-    fold.insert(fold.end(), units[u].begin(), units[u].end());
-  }
-  return folds;
-}
 
 // Solved again from the optimum, without the recordings held out (indices), by the weights of
 // residuals and the spreads of pooled units of the whole. None without a usable optimum.
@@ -419,13 +366,6 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
 
 namespace {
 
-// Whether standing still is the better prediction of half of them.
-bool LosesToStatic(const FitResult& result) {
-  const std::vector<RecordingDiagnostics>& all = result.diagnostics.recordings;
-  const auto worse = std::count_if(all.begin(), all.end(), &WorseThanStatic);
-  return worse > 0 && 2 * worse >= static_cast<std::ptrdiff_t>(all.size());
-}
-
 // %, of the hip's motion in the median recording.
 double Explained(const FitResult& result) {
   std::vector<double> explained;
@@ -443,7 +383,11 @@ double Explained(const FitResult& result) {
 FitResult FitAnyStance(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
                        const std::vector<FitOptions>& others, const SolveProgress& progress) {
   FitResult best = Fit(recordings, options, progress);
-  if (!best.ok() || others.empty() || !LosesToStatic(best)) return best;
+  if (!best.ok() || others.empty()) return best;
+  // Unless standing still is the better prediction of half of them.
+  const std::vector<RecordingDiagnostics>& all = best.diagnostics.recordings;
+  const auto worse = std::count_if(all.begin(), all.end(), &WorseThanStatic);
+  if (worse == 0 || 2 * worse < static_cast<std::ptrdiff_t>(all.size())) return best;
   const auto name = [](const FitResult& result) {
     return "--stance=" + NameOf(result.options.model.stance) + " explains " +
            Rounded(Explained(result), 3) + " %";
@@ -477,9 +421,13 @@ Result<FoldedModels> SolveFolds(const std::vector<PendulumRecording>& recordings
   model.push_range = FittedPushRange(model, recordings);
   model.step_probability = FitStepProbability(model, recordings);
   for (const std::vector<int>& fold : held_out) {
-    models.without.push_back(options.model.learned
-                                 ? SolvedWithout(recordings, asked, fold)
-                                 : RefitWithout(solved.problem, optimum, model, fold));
+    if (options.model.learned == nullptr) {
+      models.without.push_back(RefitWithout(solved.problem, optimum, model, fold));
+      continue;
+    }
+    Result<IdentifiedModel> anew = SolveModel(Without(recordings, fold), asked);
+    models.without.emplace_back();
+    if (anew.ok()) models.without.back() = std::move(anew.value());
   }
   if (!forecasts) return models;
   model.forecasts = LearnForecasts(model, recordings,
@@ -498,7 +446,18 @@ Result<IdentifiedModel> SolveModel(const std::vector<PendulumRecording>& recordi
 std::vector<FoldModel> CrossFit(const FitProblem& problem, const FitPoint& optimum,
                                 const IdentifiedModel& model, int num_threads) {
   if (NeedsGradientTraining(problem.options())) return {};
-  const std::vector<std::vector<int>> held_out = FoldsOf(problem);
+  std::vector<std::vector<int>> units =
+      MakeResamplingUnits(problem.recordings(), ClusterBy::kAuto).units;
+  if (units.size() < kFewestUnits) {
+    units.clear();
+    for (size_t i = 0; i < problem.recordings().size(); ++i) units.push_back({static_cast<int>(i)});
+  }
+  if (units.size() < kFewestUnits) return {};
+  std::vector<std::vector<int>> held_out(std::min(kFolds, units.size()));
+  for (size_t u = 0; u < units.size(); ++u) {
+    std::vector<int>& fold = held_out[u % held_out.size()];
+    fold.insert(fold.end(), units[u].begin(), units[u].end());
+  }
   std::vector<std::optional<FoldModel>> made(held_out.size());
   ParallelFor(static_cast<int>(held_out.size()), num_threads, [&](int f) {
     std::optional<IdentifiedModel> refitted = RefitWithout(problem, optimum, model, held_out[f]);

@@ -1,17 +1,17 @@
-// ident: a whole fit: solved, judged. First the solve, whose data weigh as much as they know, and
-// in which the demand to settle is tested.
+// ident: a whole fit: solved by data that weigh as much as they know, with the demand to settle
+// tested, and judged.
 //
 // 1. The fit is solved without the demand. Sigmas and effective frames (uncertainty/covariance.h)
-//    and the spread of pooled units (problem/fit_problem.cc) are estimated at its optimum and
-//    the fit solved on from there, until none changes by more than 1 %: the demand must not make
-//    the data look worse than they are.
-// 2. Who settles in time as fitted is not moved by the demand at all. Otherwise the fit is solved
-//    on with the demand, by the same weights. Twice what the rest of the cost rises by is a
-//    likelihood ratio (composite, adjusted; priors included) of as many constraints as units have
-//    people of their own to settle. Beyond the 95 % point of chi-squared with so many degrees of
-//    freedom the data contradict the demand: it is dropped, and the result says so. A constraint
-//    that need not bind has less than one degree of freedom, so this keeps the demand too often
-//    rather than too seldom. Where no fit that meets the demand is found, it is dropped as well.
+//    and the spread of pooled units (problem/fit_problem.cc) are estimated at its optimum and the
+//    fit solved on from there, until none changes by more than 1 %: the demand must not make the
+//    data look worse than they are.
+// 2. Where the fitted people do not settle in time, the fit is solved on with the demand, by the
+//    same weights. Twice what the rest of the cost rises by is a likelihood ratio (composite,
+//    adjusted; priors included) of as many constraints as units have people of their own to settle.
+//    Beyond the 95 % point of chi-squared with so many degrees of freedom the data contradict the
+//    demand: it is dropped, and the result says so. A constraint that need not bind has less than
+//    one degree of freedom, so this keeps the demand too often rather than too seldom. Where no fit
+//    that meets the demand is found, it is dropped as well.
 #pragma once
 
 #include <optional>
@@ -35,7 +35,6 @@ namespace pushid {
 
 struct WeightedSolution {
   Solution solution;
-  bool weights_settled = false;  // within 1 %
   SettlingDemand settling;
   std::optional<FitPoint> free;  // the optimum without the demand, where that binds and holds
   WorkLog work;                  // since the solve began
@@ -67,8 +66,8 @@ Result<IdentifiedModel> SolveModel(const std::vector<PendulumRecording>& recordi
                                    FitOptions options, bool forecasts = false);
 
 // SolveModel, and beside it a model without each of some folds: refitted, which takes a fraction of
-// a solve, or, of fits that are too large to repeat and of networks, which would remember what is
-// held out, solved anew. None of a fold without a usable optimum.
+// a solve, or solved anew, of networks, which would remember what is held out. None of a fold
+// without a usable optimum.
 struct FoldedModels {
   IdentifiedModel whole;
   std::vector<std::optional<IdentifiedModel>> without;

@@ -27,6 +27,11 @@ const std::string* Find(const GivenOptions& given, const std::string& name) {
   return nullptr;
 }
 
+std::string PresetIn(const GivenOptions& given) {
+  const std::string* named = Find(given, "preset");
+  return named != nullptr ? *named : kAutoPreset;
+}
+
 MaybeError ApplyStage(OptionStage stage, const GivenOptions& given, FitOptions* options) {
   for (const FitOptionRow& row : FitOptionRows()) {
     const std::string* value = row.stage == stage ? Find(given, row.name) : nullptr;
@@ -80,16 +85,6 @@ MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
   return std::nullopt;
 }
 
-// What the preset pools by name may have been fixed since, or not act any more.
-void PoolOnlyFree(FitOptions* options) {
-  if (PoolsAllOrNone(options->pool)) return;
-  std::string free;
-  for (const std::string& name : SplitList(options->pool)) {
-    if (options->table.Find(name)->free) free += (free.empty() ? "" : ",") + name;
-  }
-  options->pool = free.empty() ? "none" : free;
-}
-
 Result<FitOptions> OverPreset(const std::string& preset, const GivenOptions& given,
                               const GivenOptions& must_act) {
   for (const std::string& item : ItemsOf(given, "free")) {
@@ -106,7 +101,14 @@ Result<FitOptions> OverPreset(const std::string& preset, const GivenOptions& giv
   if (const auto network = o.model.learned) {
     o.model.learned = InitialNetwork(network->shape, o.seed, network->rod, network->pair);
   }
-  if (Find(given, "pool") == nullptr) PoolOnlyFree(&o);
+  // Parameters that the preset pools by name may have been fixed since, or not act any more.
+  if (Find(given, "pool") == nullptr && !PoolsAllOrNone(o.pool)) {
+    std::vector<std::string> free;
+    for (const std::string& name : SplitList(o.pool)) {
+      if (o.table.Find(name)->free) free.push_back(name);
+    }
+    o.pool = free.empty() ? "none" : Joined(free, ",");
+  }
   if (MaybeError error = PoolParameters(&o)) return *error;
   std::string invalid;
   if (!o.IsValid(&invalid)) return Error{invalid};
@@ -114,45 +116,23 @@ Result<FitOptions> OverPreset(const std::string& preset, const GivenOptions& giv
   return o;
 }
 
-std::string PresetIn(const GivenOptions& given) {
-  const std::string* named = Find(given, "preset");
-  return named != nullptr ? *named : kAutoPreset;
-}
-
 // Whether a stance that was not asked for goes together with what was.
 bool GoesTogether(const FitOptions& o, const std::vector<PendulumRecording>& recordings) {
-  const bool states_alone = o.likelihood == Likelihood::kTrajectory && o.model.learned == nullptr;
-  const bool all_act =
-      std::all_of(o.table.specs.begin(), o.table.specs.end(),
-                  [&o](const ParameterSpec& spec) { return !spec.free || Acts(spec.id, o.model); });
-  return states_alone && all_act &&
-         (o.model.stance != Stance::kSteps ||
-          std::all_of(recordings.begin(), recordings.end(), [](const PendulumRecording& r) {
-            return r.scene.dt * kLeastSteppingRate <= 1.0;
-          }));
+  if (o.likelihood != Likelihood::kTrajectory || o.model.learned != nullptr) return false;
+  for (Parameter id : o.table.Free()) {
+    if (!Acts(id, o.model)) return false;
+  }
+  return o.model.stance != Stance::kSteps ||
+         std::all_of(recordings.begin(), recordings.end(), [](const PendulumRecording& r) {
+           return r.scene.dt * kLeastSteppingRate <= 1.0;
+         });
 }
 
 // The stance that the recorded feet show; none for presets with a stance of their own.
 std::optional<Stance> StanceFromFeet(const std::vector<PendulumRecording>& recordings,
                                      const std::string& preset) {
   const std::optional<Stance> of_movers = StanceOfMovers(preset);
-  if (!of_movers) return std::nullopt;
-  return StanceOf(FeetOf(recordings), *of_movers);
-}
-
-// Over the preset, with the stance that the feet tell where nothing says another.
-Result<FitOptions> OverPresetOf(const std::vector<PendulumRecording>& recordings,
-                                const std::string& preset, const GivenOptions& given,
-                                const GivenOptions& must_act) {
-  const std::string* asked = Find(given, "stance");
-  const std::optional<Stance> told = StanceFromFeet(recordings, preset);
-  const bool open = asked == nullptr || *asked == kAutoStance;
-  if (open && told && *told != Stance::kSlide) {
-    Result<FitOptions> made =
-        OverPreset(preset, Merged(given, {{"stance", NameOf(*told)}}), must_act);
-    if (made.ok() && GoesTogether(made.value(), recordings)) return made;
-  }
-  return OverPreset(preset, given, must_act);
+  return of_movers ? std::optional(StanceOf(FeetOf(recordings), *of_movers)) : std::nullopt;
 }
 
 }  // namespace
@@ -196,14 +176,24 @@ Result<FitOptions> MakeFitOptions(const GivenOptions& given,
                                   const std::vector<PendulumRecording>* recordings,
                                   const GivenOptions& must_act) {
   const std::string preset = PresetIn(given);
-  if (recordings != nullptr) {
-    return OverPresetOf(*recordings, PresetFor(preset, *recordings), given, must_act);
+  if (recordings == nullptr) {
+    if (preset != kAutoPreset) return OverPreset(preset, given, must_act);
+    const Result<FitOptions> single = OverPreset("tail", given, must_act);
+    if (single.ok()) return single;
+    const Result<FitOptions> group = OverPreset("group", given, must_act);
+    return group.ok() ? group : single;
   }
-  if (preset != kAutoPreset) return OverPreset(preset, given, must_act);
-  const Result<FitOptions> single = OverPreset("tail", given, must_act);
-  if (single.ok()) return single;
-  const Result<FitOptions> group = OverPreset("group", given, must_act);
-  return group.ok() ? group : single;
+  // With the stance that the feet tell where nothing says another.
+  const std::string chosen = PresetFor(preset, *recordings);
+  const std::string* asked = Find(given, "stance");
+  const std::optional<Stance> told = StanceFromFeet(*recordings, chosen);
+  const bool open = asked == nullptr || *asked == kAutoStance;
+  if (open && told && *told != Stance::kSlide) {
+    Result<FitOptions> made =
+        OverPreset(chosen, Merged(given, {{"stance", NameOf(*told)}}), must_act);
+    if (made.ok() && GoesTogether(made.value(), *recordings)) return made;
+  }
+  return OverPreset(chosen, given, must_act);
 }
 
 Result<FitSetup> FitSetup::Make(GivenOptions given, GivenOptions must_act) {
@@ -259,7 +249,7 @@ std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOpti
 
 namespace {
 
-// What to choose by where two options exclude each other.
+// To choose by, where two options exclude each other.
 constexpr char kQuestions[] =
     "rollouts (--likelihood=trajectory, with --delay and platforms) answer how stiff, damped and "
     "late people balance, likelihoods of single steps how much of their motion is noise";
@@ -303,34 +293,11 @@ void UnpoolOneUnit(const std::vector<PendulumRecording>& recordings, FitOptions*
   Result<FitOptions> preset = StartPreset(options->preset);
   if (!preset.ok()) return;
   SetStance(options->model.stance, &preset.value());  // which pools by itself
-  const bool asked =
-      preset.value().pool != options->pool || preset.value().pool_by != options->pool_by;
-  if (!asked) return;
   const bool named = preset.value().pool != options->pool;
+  if (!named && preset.value().pool_by == options->pool_by) return;  // not asked for
   warnings->push_back((named ? "--pool=" + options->pool : "--pool_by=" + options->pool_by) +
                       " does nothing: all recordings share one " + options->pool_by + ", '" +
                       *units.begin() + "'");
-}
-
-// A label that no recording has pools by nothing; that of the presets may be absent.
-MaybeError CheckPoolingLabel(const std::vector<PendulumRecording>& recordings,
-                             const FitOptions& options) {
-  const std::string& key = options.pool_by;
-  if (key == kSubjectUnit || key == kSettingLabel || key == kConditionLabel) return std::nullopt;
-  return CheckLabel(recordings, "pool_by", key, kSubjectUnit);
-}
-
-MaybeError CheckFrameRates(const std::vector<PendulumRecording>& recordings,
-                           const FitOptions& options) {
-  if (options.model.stance != Stance::kSteps) return std::nullopt;
-  for (const PendulumRecording& recording : recordings) {
-    const double rate = 1.0 / recording.scene.dt;
-    if (rate >= kLeastSteppingRate) continue;
-    return Error{"recording " + recording.id + " has " + Rounded(rate, 3) +
-                 " frames per second, too few for --stance=steps; resample it "
-                 "(--resample_fps=60), or let feet slide"};
-  }
-  return std::nullopt;
 }
 
 // A likelihood of single steps knows the state [q, qd] of everybody and nothing else.
@@ -368,8 +335,18 @@ MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptio
         "--interaction names a network between people, but every recording is of one person; leave "
         "it out, or fit recordings of groups"};
   }
-  if (MaybeError error = CheckPoolingLabel(recordings, *options)) return error;
-  if (MaybeError error = CheckFrameRates(recordings, *options)) return error;
+  // A label that no recording has pools by nothing; that of the presets may be absent.
+  const std::string& key = options->pool_by;
+  if (key != kSubjectUnit && key != kSettingLabel && key != kConditionLabel) {
+    if (MaybeError error = CheckLabel(recordings, "pool_by", key, kSubjectUnit)) return error;
+  }
+  for (const PendulumRecording& recording : recordings) {
+    const double rate = 1.0 / recording.scene.dt;
+    if (options->model.stance != Stance::kSteps || rate >= kLeastSteppingRate) continue;
+    return Error{"recording " + recording.id + " has " + Rounded(rate, 3) +
+                 " frames per second, too few for --stance=steps; resample it "
+                 "(--resample_fps=60), or let feet slide"};
+  }
   if (MaybeError error = CheckLaboratory(recordings, *options)) return error;
   if (MaybeError error = CheckLikelihood(recordings, *options)) return error;
   Warnings told;
@@ -391,6 +368,14 @@ MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptio
 }
 
 namespace {
+
+// The first fault that holds.
+MaybeError FirstOf(const std::vector<std::pair<bool, std::string>>& faults) {
+  for (const auto& [holds, text] : faults) {
+    if (holds) return Error{text};
+  }
+  return std::nullopt;
+}
 
 // A delay is seen in how an answer follows a push: a recording should last some times as long.
 constexpr double kDelaysInRecording = 2.0;
@@ -418,108 +403,69 @@ MaybeError CheckDelay(const std::vector<PendulumRecording>& recordings, const Fi
   return std::nullopt;
 }
 
-MaybeError CheckBodyModel(const FitOptions& options) {
-  const ModelOptions& model = options.model;
-  if (model.body != BodyModel::kTable) return std::nullopt;
-  if (model.stance != Stance::kSlide) {
-    return Error{"--body=table is for a pendulum on a cart that moves, but --stance is " +
-                 NameOf(model.stance) +
-                 "; add --stance=slide, or take the masses from the segments "
-                 "(--body=anthropometric)"};
-  }
-  const ParameterSpec& gyration = options.table[kGyrationRadius];
-  if (gyration.free && gyration.nominal == 0.0) {
-    return Error{
-        "gyration_radius is free and starts at 0, where nothing depends on it at first order; give "
-        "a start, as in --free=gyration_radius=0.3"};
-  }
-  if (RodMoves(model)) return Error{"--body=table and --rod do not go together; leave one out"};
-  return std::nullopt;
-}
-
-MaybeError CheckGround(const PendulumRecording& r, const ModelOptions& model) {
-  const GroundMotion& ground = r.scene.ground;
-  if (!ground.moves()) return std::nullopt;
-  if (RodMoves(model)) {
-    return Error{"recording " + r.id +
-                 " is on moving ground, whose inertia no law of --rod has; leave --rod out, or the "
-                 "recording"};
-  }
-  const bool tilts = std::any_of(ground.poses.begin(), ground.poses.end(),
-                                 [](const GroundPose& pose) { return !pose.tail<2>().isZero(); });
-  if (tilts && model.interaction.Any() && r.num_people() > 1) {
-    return Error{"recording " + r.id +
-                 " has several people who touch on ground that tilts, about where each of them "
-                 "stands; fit with --interaction=none, or leave the recording out"};
-  }
-  return std::nullopt;
-}
-
-MaybeError CheckPlates(const PendulumRecording& r, const FitOptions& options) {
-  if (!r.HasPlates()) return std::nullopt;
-  const ModelOptions& model = options.model;
-  const std::string where = "recording " + r.id + " has force_plates to be measured against";
-  if (RodMoves(model)) {
-    return Error{where +
-                 ", which know nothing of a rod that moves; leave --rod out, or set \"use\": "
-                 "\"none\" there"};
-  }
-  if (options.likelihood != Likelihood::kTrajectory) {
-    return Error{where + ", which --likelihood=" + NameOf(options.likelihood) +
-                 " does not have: it knows positions alone; set \"use\": \"none\" there, or fit "
-                 "with --likelihood=trajectory; " +
-                 kQuestions};
-  }
-  if (model.interaction.Any() && r.num_people() > 1) {
-    return Error{"recording " + r.id +
-                 " has force_plates and several people who touch: platforms cannot tell what they "
-                 "do to each other from what the ground does; set \"use\": \"none\" there, or fit "
-                 "with --interaction=none"};
-  }
-  return std::nullopt;
-}
-
-// Where nobody saw the motion, only what platforms measure is compared.
-MaybeError CheckPlatesAlone(const PendulumRecording& r, const FitOptions& options) {
-  if (r.IsSeen()) return std::nullopt;
-  const ModelOptions& model = options.model;
-  const std::string whose =
-      "recording " + r.id + " was measured by force plates alone (\"motion\": \"none\")";
-  if (model.stance != Stance::kFixed) {
-    return Error{whose + ", which tell nothing of feet that slide or step; add --stance=fixed"};
-  }
-  if (model.body != BodyModel::kLdp || RodMoves(model) || NeedsGradientTraining(options)) {
-    return Error{whose +
-                 ", from which neither bodies, rods nor large networks are learnt; leave --body, "
-                 "--rod and the network out"};
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 MaybeError CheckLaboratory(const std::vector<PendulumRecording>& recordings,
                            const FitOptions& options) {
+  const ModelOptions& model = options.model;
+  const bool large = NeedsGradientTraining(options), table = model.body == BodyModel::kTable;
+  const bool rod = RodMoves(model);
+  const ParameterSpec& gyration = options.table[kGyrationRadius];
   if (MaybeError error = CheckDelay(recordings, options)) return error;
-  if (MaybeError error = CheckBodyModel(options)) return error;
-  const bool large = NeedsGradientTraining(options);
-  if (large && (options.model.delay != Delay::kNone || options.model.body == BodyModel::kTable)) {
-    return Error{
+  MaybeError error = FirstOf(
+      {{table && model.stance != Stance::kSlide,
+        "--body=table is for a pendulum on a cart that moves, but --stance is " +
+            NameOf(model.stance) +
+            "; add --stance=slide, or take the masses from the segments (--body=anthropometric)"},
+       {table && gyration.free && gyration.nominal == 0.0,
+        "gyration_radius is free and starts at 0, where nothing depends on it at first order; give "
+        "a start, as in --free=gyration_radius=0.3"},
+       {table && rod, "--body=table and --rod do not go together; leave one out"},
+       {large && (model.delay != Delay::kNone || table),
         "networks of this size are trained by their gradient, which knows neither --delay nor "
-        "--body=table; leave them out, or take a smaller network"};
+        "--body=table; leave them out, or take a smaller network"}});
+  for (size_t i = 0; !error && i < recordings.size(); ++i) {
+    const PendulumRecording& r = recordings[i];
+    const std::vector<GroundPose>& poses = r.scene.ground.poses;
+    const bool moves = r.scene.ground.moves(), plates = r.HasPlates(), unseen = !r.IsSeen();
+    const bool touch = model.interaction.Any() && r.num_people() > 1;
+    const bool tilts = std::any_of(poses.begin(), poses.end(),
+                                   [](const GroundPose& pose) { return !pose.tail<2>().isZero(); });
+    const std::string name = "recording " + r.id;
+    const std::string measured = name + " has force_plates to be measured against";
+    // Where nobody saw the motion, only what platforms measure is compared.
+    const std::string alone = name + " was measured by force plates alone (\"motion\": \"none\")";
+    error = FirstOf(
+        {{moves && rod, name +
+                            " is on moving ground, whose inertia no law of --rod has; leave --rod "
+                            "out, or the recording"},
+         {moves && tilts && touch,
+          name + " has several people who touch on ground that tilts, about where each of them "
+                 "stands; fit with --interaction=none, or leave the recording out"},
+         {plates && rod, measured +
+                             ", which know nothing of a rod that moves; leave --rod out, or set "
+                             "\"use\": \"none\" there"},
+         {plates && options.likelihood != Likelihood::kTrajectory,
+          measured + ", which --likelihood=" + NameOf(options.likelihood) +
+              " does not have: it knows positions alone; set \"use\": \"none\" there, or fit with "
+              "--likelihood=trajectory; " +
+              kQuestions},
+         {plates && touch,
+          name +
+              " has force_plates and several people who touch: platforms cannot tell what they do "
+              "to each other from what the ground does; set \"use\": \"none\" there, or fit with "
+              "--interaction=none"},
+         {unseen && model.stance != Stance::kFixed,
+          alone + ", which tell nothing of feet that slide or step; add --stance=fixed"},
+         {unseen && (model.body != BodyModel::kLdp || rod || large),
+          alone + ", from which neither bodies, rods nor large networks are learnt; leave --body, "
+                  "--rod and the network out"},
+         {large && (moves || plates),
+          name + " has moving ground or force_plates, and the network is of a size that is trained "
+                 "by its gradient, which knows neither; take a smaller network, or leave the "
+                 "recording out"}});
   }
-  for (const PendulumRecording& r : recordings) {
-    if (MaybeError error = CheckGround(r, options.model)) return error;
-    if (MaybeError error = CheckPlates(r, options)) return error;
-    if (MaybeError error = CheckPlatesAlone(r, options)) return error;
-    if (large && (r.scene.ground.moves() || r.HasPlates())) {
-      return Error{"recording " + r.id +
-                   " has moving ground or force_plates, and the network is of a size that is "
-                   "trained by its gradient, which knows neither; take a smaller network, or leave "
-                   "the recording out"};
-    }
-  }
-  return std::nullopt;
+  return error;
 }
 
 Result<IdentifiedModel> SyntheticTruth(const SyntheticOptions& study, const std::string& set) {

@@ -33,13 +33,13 @@ Result<FitOptions> MakeFitOptions(const GivenOptions& given,
                                   const std::vector<PendulumRecording>* recordings = nullptr,
                                   const GivenOptions& must_act = {});
 
-// MakeFitOptions in two steps, of which the second builds again only where the recordings decide
-// for another preset than the first took.
+// MakeFitOptions in two steps; the second builds again only where the recordings decide for another
+// preset than the first took.
 class FitSetup {
  public:
   static Result<FitSetup> Make(GivenOptions given, GivenOptions must_act = {});
 
-  // What does not depend on the recordings: how they are loaded, whether bodies are fitted.
+  // As far as it does not depend on the recordings: how they are loaded, whether bodies are fitted.
   const FitOptions& roughly() const { return roughly_; }
   Result<FitOptions> For(const std::vector<PendulumRecording>& recordings) const;
   // These options with each other stance that goes with what was given; none where a stance was
@@ -56,8 +56,6 @@ class FitSetup {
 
 // Options that are taken but do nothing, or not what they seem to.
 std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOptions& options);
-
-// Options made fit for recordings, and what recordings cannot be fitted by them.
 
 // Makes options fit for these recordings: holds what can have no effect on any of them (the tail,
 // where every push is measured whole), pools nothing where all belong to one unit, and adds the
@@ -76,12 +74,10 @@ MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptio
 MaybeError CheckLaboratory(const std::vector<PendulumRecording>& recordings,
                            const FitOptions& options);
 
-// Synthetic people: the model that their recordings are made from, so that a fit can find
-// every parameter again.
-
-// The tail preset, or that of groups where people stand in rows, with the feet and the process
-// noise of study.model: what it fits has values near those identified from the published
-// recordings, what it holds keeps its value. set: values that replace these ("mu=20,a_x=-5").
+// The model that recordings of synthetic people are made from: the tail preset, or that of groups
+// where people stand in rows, with the feet and the process noise of study.model: what it fits has
+// values near those identified from the published recordings, what it holds keeps its value. set:
+// values that replace these ("mu=20,a_x=-5").
 Result<IdentifiedModel> SyntheticTruth(const SyntheticOptions& study, const std::string& set);
 
 }  // namespace pushid

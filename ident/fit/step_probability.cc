@@ -22,8 +22,6 @@ constexpr double kFarthestFitted = -0.1;  // m
 constexpr double kLeastFactor = 1e-3, kMostFactor = 4.0;
 constexpr double kAgainstNone = 1.0 / 500.0;  // of 1/f
 
-double Logistic(double x) { return 1.0 / (1.0 + std::exp(-x)); }
-
 Eigen::Vector2d Features(const StepOutcome& outcome) {
   return {1.0, std::max(outcome.margin, kFarthestFitted)};
 }
@@ -39,7 +37,7 @@ Eigen::Vector2d MostLikelyCoefficients(const std::vector<StepOutcome>& outcomes,
     *hessian = precision.asDiagonal();
     for (const StepOutcome& outcome : outcomes) {
       const Eigen::Vector2d x = Features(outcome);
-      const double p = Logistic(coefficients.dot(x));
+      const double p = 1.0 / (1.0 + std::exp(-coefficients.dot(x)));
       gradient += ((outcome.stepped ? 1.0 : 0.0) - p) * x;
       *hessian += p * (1.0 - p) * x * x.transpose();
     }
@@ -86,22 +84,6 @@ bool StepsWith(double factor, int person, const ModelOptions& options,
   return false;
 }
 
-// Everybody's outcome, in order; none where the model's rollout leaves its domain.
-std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,
-                                      const PendulumRecording& recording) {
-  if (!recording.StepsKnown()) return {};
-  RolloutPath<double> path;
-  const RolloutStatus status = RolloutInOwnAxes(
-      recording, model.options, PeoplesParameters(model, recording), recording.num_frames(), &path);
-  std::vector<StepOutcome> outcomes;
-  if (!status.ok) return outcomes;
-  const std::vector<double> margins = StepMargins(model, recording, path);
-  for (int n = 0; n < static_cast<int>(margins.size()); ++n) {
-    outcomes.push_back({margins[n], recording.Stepped(n), recording.subject_ids[n]});
-  }
-  return outcomes;
-}
-
 }  // namespace
 
 double StepMargin(double support, double factor) {
@@ -145,11 +127,6 @@ std::vector<double> StepMargins(const ModelOptions& options,
   return margins;
 }
 
-std::vector<double> StepMargins(const IdentifiedModel& model, const PendulumRecording& recording,
-                                const RolloutPath<double>& path) {
-  return StepMargins(model.options, PeoplesParameters(model, recording), recording, path);
-}
-
 std::optional<StepProbability> FitStepProbability(const std::vector<StepOutcome>& outcomes) {
   StepProbability fitted;
   fitted.tracks = static_cast<int>(outcomes.size());
@@ -178,9 +155,14 @@ std::optional<StepProbability> FitStepProbability(const std::vector<StepOutcome>
 std::optional<StepProbability> FitStepProbability(
     const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings) {
   std::vector<StepOutcome> outcomes;
-  for (const PendulumRecording& recording : recordings) {
-    for (StepOutcome& outcome : StepOutcomes(model, recording)) {
-      outcomes.push_back(std::move(outcome));
+  for (const PendulumRecording& r : recordings) {
+    if (!r.StepsKnown()) continue;
+    const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, r);
+    RolloutPath<double> path;
+    if (!RolloutInOwnAxes(r, model.options, parameters, r.num_frames(), &path).ok) continue;
+    const std::vector<double> margins = StepMargins(model.options, parameters, r, path);
+    for (int n = 0; n < static_cast<int>(margins.size()); ++n) {
+      outcomes.push_back({margins[n], r.Stepped(n), r.subject_ids[n]});
     }
   }
   return FitStepProbability(outcomes);

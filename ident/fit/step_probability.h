@@ -18,9 +18,9 @@
 // a weak prior that holds them finite where a margin tells all who step from all who do not.
 // Margins below -0.1 m count as that: of w, who is not moved at all tells no more than who hardly
 // is. Errors are clustered by person (CR1), and those of a probability are by the delta method.
-// What is known of a person is what was recorded: who would step after the recording's end counts
-// as standing. So w holds all that makes people do otherwise than the margin says, errors of the
-// recorded pushes among it; of a push that is known less well than those, P(step) is too sure.
+// People who would step after the recording's end count as standing. So w holds all that makes
+// people do otherwise than the margin says, errors of the recorded pushes among it; of a push that
+// is known less well than those, P(step) is too sure.
 #pragma once
 
 #include <optional>
@@ -52,8 +52,6 @@ inline constexpr int kMostPeopleWithMargins = 20;
 std::vector<double> StepMargins(const ModelOptions& options,
                                 const std::vector<ParameterSet<double>>& parameters,
                                 const PendulumRecording& recording,
-                                const RolloutPath<double>& path);
-std::vector<double> StepMargins(const IdentifiedModel& model, const PendulumRecording& recording,
                                 const RolloutPath<double>& path);
 
 // Nothing where no steps are known; where all do the same, what the prior leaves of it.

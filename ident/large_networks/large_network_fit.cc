@@ -14,59 +14,6 @@
 namespace pushid {
 namespace {
 
-// From the flat vector that is moved, [weights, (shared - start) / unit], to a point.
-class NetworkVariables {
- public:
-  explicit NetworkVariables(const LargeNetworkFit& fit)
-      : fit_(fit), num_weights_(fit.model.learned->num_weights()), shared_(fit.shared) {}
-
-  int size() const { return num_weights_ + static_cast<int>(shared_.size()); }
-  int num_weights() const { return num_weights_; }
-
-  std::vector<double> Start() const {
-    std::vector<double> start = fit_.model.learned->weights;
-    start.resize(size(), 0.0);
-    return start;
-  }
-
-  const std::vector<double>& Shared(const double* variables) {
-    for (size_t i = 0; i < shared_.size(); ++i) {
-      shared_[i] = fit_.shared[i] + fit_.shared_prior[i].unit * variables[num_weights_ + i];
-    }
-    return shared_;
-  }
-
-  // Returns the cost of the priors at Shared(variables), and adds their gradient.
-  double AddPriors(const double* variables, double* gradient) const {
-    double cost = 0.0;
-    const double sigma = fit_.options.weight_sigma;
-    if (sigma > 0.0) {
-      const Eigen::Map<const Eigen::VectorXd> weights(variables, num_weights_);
-      cost += 0.5 * weights.squaredNorm() / (sigma * sigma);
-      Eigen::Map<Eigen::VectorXd>(gradient, num_weights_) += weights / (sigma * sigma);
-    }
-    for (size_t i = 0; i < shared_.size(); ++i) {
-      const SharedPrior& prior = fit_.shared_prior[i];
-      const double r = (shared_[i] - prior.mean) / prior.sigma;
-      cost += 0.5 * r * r;
-      gradient[num_weights_ + i] += r / prior.sigma * prior.unit;
-    }
-    return cost;
-  }
-
-  // From d/d(shared) to d/d(variables).
-  void Scale(const std::vector<double>& by_shared, double* gradient) const {
-    for (size_t i = 0; i < shared_.size(); ++i) {
-      gradient[num_weights_ + i] = by_shared[i] * fit_.shared_prior[i].unit;
-    }
-  }
-
- private:
-  const LargeNetworkFit& fit_;
-  int num_weights_;
-  std::vector<double> shared_;
-};
-
 class Adam {
  public:
   explicit Adam(Eigen::Index size)
@@ -86,25 +33,21 @@ class Adam {
   double of_mean_ = 1.0, of_square_ = 1.0;
 };
 
-class Clip {
- public:
-  void Shorten(Eigen::ArrayXd* gradient) {
-    constexpr double kLongest = 2.0, kKept = 0.95;  // of the mean length so far
-    const double length = gradient->matrix().norm();
-    const double most = mean_ > 0.0 ? std::min(length, kLongest * mean_) : length;
-    if (most < length) *gradient *= most / length;
-    mean_ = mean_ > 0.0 ? kKept * mean_ + (1.0 - kKept) * most : length;
-  }
+// Shortens a gradient to twice the mean length so far.
+void Clip(double* mean, Eigen::ArrayXd* gradient) {
+  constexpr double kLongest = 2.0, kKept = 0.95;
+  const double length = gradient->matrix().norm();
+  const double most = *mean > 0.0 ? std::min(length, kLongest * *mean) : length;
+  if (most < length) *gradient *= most / length;
+  *mean = *mean > 0.0 ? kKept * *mean + (1.0 - kKept) * most : length;
+}
 
- private:
-  double mean_ = 0.0;
-};
-
-class TrainingBatches {
+// The cost and its gradient by x = [weights, (shared - start) / unit], batch by batch.
+class Training {
  public:
-  static Result<TrainingBatches> Create(const LargeNetworkFit& fit,
-                                        std::vector<AdjointRecording> recordings) {
-    TrainingBatches made(fit);
+  static Result<Training> Create(const LargeNetworkFit& fit,
+                                 std::vector<AdjointRecording> recordings) {
+    Training made(fit);
     made.random_.Shuffle(&recordings);
     for (size_t i = 0; i < recordings.size(); i += kRecordingsOfAStep) {
       const auto end =
@@ -117,42 +60,74 @@ class TrainingBatches {
     return made;
   }
 
-  // Calls step(gradient) for each, in random order; returns the sum of their costs and failures.
+  std::vector<double> Start() const {
+    std::vector<double> start = fit_.model.learned->weights;
+    start.resize(num_weights_ + fit_.shared.size(), 0.0);
+    return start;
+  }
+
+  std::vector<double> Shared(const std::vector<double>& x) const {
+    std::vector<double> shared = fit_.shared;
+    for (size_t i = 0; i < shared.size(); ++i) {
+      shared[i] += fit_.shared_prior[i].unit * x[num_weights_ + i];
+    }
+    return shared;
+  }
+
+  // Calls step(gradient) for each batch, in random order, which may move *x; returns the pass.
   template <typename Step>
-  std::pair<double, int> Pass(const std::vector<double>& x, const Step& step) {
-    std::pair<double, int> sum = {0.0, 0};
+  LargeNetworkPass Pass(const std::vector<double>& x, const Step& step) {
+    LargeNetworkPass pass;
     std::vector<int> order(batches_.size());
     std::iota(order.begin(), order.end(), 0);
     random_.Shuffle(&order);
     const double share = 1.0 / static_cast<double>(batches_.size());
+    std::vector<double> by_shared(fit_.shared.size());
+    Eigen::ArrayXd gradient(x.size()), of_priors(x.size());
     for (int k : order) {
-      const double* shared = variables_.Shared(x.data()).data();
-      gradient_.setZero();
+      const std::vector<double> shared = Shared(x);
+      gradient.setZero();
       const AdjointCost cost =
-          batches_[k].Evaluate(shared, x.data(), by_shared_.data(), gradient_.data());
-      variables_.Scale(by_shared_, gradient_.data());
-      of_priors_.setZero();
-      sum.first += cost.cost + share * variables_.AddPriors(x.data(), of_priors_.data());
-      sum.second += cost.num_failed();
-      gradient_ += share * of_priors_;
-      step(&gradient_);
+          batches_[k].Evaluate(shared.data(), x.data(), by_shared.data(), gradient.data());
+      for (size_t i = 0; i < by_shared.size(); ++i) {
+        gradient[num_weights_ + i] = by_shared[i] * fit_.shared_prior[i].unit;
+      }
+      of_priors.setZero();
+      pass.cost += cost.cost + share * AddPriors(x, shared, &of_priors);
+      pass.failures += cost.num_failed();
+      gradient += share * of_priors;
+      step(&gradient);
     }
-    return sum;
+    return pass;
   }
 
  private:
-  explicit TrainingBatches(const LargeNetworkFit& fit)
-      : variables_(fit),
-        random_(fit.options.seed),
-        gradient_(variables_.size()),
-        of_priors_(variables_.size()),
-        by_shared_(fit.shared.size()) {}
+  explicit Training(const LargeNetworkFit& fit)
+      : fit_(fit), num_weights_(fit.model.learned->num_weights()), random_(fit.options.seed) {}
 
-  NetworkVariables variables_;
+  // Returns the cost of the priors, and adds their gradient.
+  double AddPriors(const std::vector<double>& x, const std::vector<double>& shared,
+                   Eigen::ArrayXd* gradient) const {
+    double cost = 0.0;
+    const double sigma = fit_.options.weight_sigma;
+    if (sigma > 0.0) {
+      const Eigen::Map<const Eigen::VectorXd> weights(x.data(), num_weights_);
+      cost += 0.5 * weights.squaredNorm() / (sigma * sigma);
+      gradient->head(num_weights_) += weights.array() / (sigma * sigma);
+    }
+    for (size_t i = 0; i < shared.size(); ++i) {
+      const SharedPrior& prior = fit_.shared_prior[i];
+      const double r = (shared[i] - prior.mean) / prior.sigma;
+      cost += 0.5 * r * r;
+      (*gradient)[num_weights_ + i] += r / prior.sigma * prior.unit;
+    }
+    return cost;
+  }
+
+  const LargeNetworkFit& fit_;
+  int num_weights_;
   Random random_;
   std::vector<AdjointGradient> batches_;
-  Eigen::ArrayXd gradient_, of_priors_;
-  std::vector<double> by_shared_;
 };
 
 MaybeError CheckFit(const LargeNetworkFit& fit) {
@@ -225,31 +200,31 @@ Result<LargeNetworkSolution> FitLargeNetwork(const LargeNetworkFit& fit,
   for (const ShortenedRecording& one : solution.shortened) {
     recordings[one.training].horizon = one.status.frame;
   }
-  Result<TrainingBatches> batches = TrainingBatches::Create(fit, std::move(recordings));
-  if (!batches.ok()) return batches.error();
-  NetworkVariables variables(fit);
-  std::vector<double> x = variables.Start();
+  Result<Training> training = Training::Create(fit, std::move(recordings));
+  if (!training.ok()) return training.error();
+  std::vector<double> x = training.value().Start();
   Adam adam(static_cast<Eigen::Index>(x.size()));
-  Clip clip;
+  double mean_length = 0.0;
   const int passes = fit.options.passes;
   const double fall = fit.options.last_rate / fit.options.rate;
   for (int pass = 0; pass <= passes; ++pass) {
     const double rate = pass == 0 ? 0.0 : fit.options.rate * std::pow(fall, double(pass) / passes);
     double steepest = 0.0;
-    const auto [cost, failures] = batches.value().Pass(x, [&](Eigen::ArrayXd* gradient) {
+    LargeNetworkPass made = training.value().Pass(x, [&](Eigen::ArrayXd* gradient) {
       steepest = std::max(steepest, gradient->abs().maxCoeff());
-      clip.Shorten(gradient);
+      Clip(&mean_length, gradient);
       if (rate > 0.0) adam.Step(*gradient, rate, &x);
     });
-    if (!std::isfinite(cost) || !std::isfinite(steepest)) {
+    if (!std::isfinite(made.cost) || !std::isfinite(steepest)) {
       return Error{"pass " + std::to_string(pass) +
                    " of the network's training has a cost or a gradient that is not finite"};
     }
-    solution.passes.push_back({pass, cost, failures});
-    if (progress && !progress(solution.passes.back())) break;
+    made.pass = pass;
+    solution.passes.push_back(made);
+    if (progress && !progress(made)) break;
   }
-  solution.weights.assign(x.begin(), x.begin() + variables.num_weights());
-  solution.shared = variables.Shared(x.data());
+  solution.weights.assign(x.begin(), x.begin() + fit.model.learned->num_weights());
+  solution.shared = training.value().Shared(x);
   return solution;
 }
 

@@ -3,9 +3,6 @@
 //
 //   cost = cost of the training recordings + 1/2 |weights / sigma|^2
 //        + 1/2 |(shared - mean) / sigma|^2
-//   LargeNetworkFit fit{training, options.model, options.table.Map(), options.sigmas};
-//   fit.shared = ..., fit.options.weight_sigma = ...;
-//   Result<LargeNetworkSolution> solution = FitLargeNetwork(fit);
 // Starts from the network that the model holds: random hidden weights and no output. The same start
 // and the same seed give the same bits.
 //
@@ -38,7 +35,7 @@ struct LargeNetworkOptions {
 // With the rates of what is trained: LDP's networks have 3e-4 throughout, as published.
 LargeNetworkOptions OptionsFor(const LearnedTerms& learned);
 
-// What holds a shared parameter, on the fitted scale.
+// The prior of a shared parameter, on the fitted scale.
 struct SharedPrior {
   double mean = 0.0;
   double sigma = std::numeric_limits<double>::infinity();
@@ -57,7 +54,7 @@ struct LargeNetworkFit {
   LargeNetworkOptions options;
 };
 
-// One pass, whose cost is summed while the weights move; the first one does not move them.
+// A pass, whose cost is summed while the weights move; the first one does not move them.
 struct LargeNetworkPass {
   int pass = 0;
   double cost = 0.0;  // all that is minimized

@@ -79,7 +79,8 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
     prediction.hip.push_back(std::move(hip));
   }
   if (!model.step_probability) return prediction;
-  for (double margin : StepMargins(model, recording, prediction.path)) {
+  for (double margin : StepMargins(model.options, PeoplesParameters(model, recording), recording,
+                                   prediction.path)) {
     prediction.steps.push_back(
         {margin, model.step_probability->At(margin), model.step_probability->ErrorAt(margin)});
   }

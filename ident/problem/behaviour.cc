@@ -94,8 +94,8 @@ double SecondsUntilStill(const std::vector<Scene>& scenes, const ModelOptions& o
 // cart's derivative is made), and the rod's length. LDP's networks, which remember, have no rest.
 constexpr int kPreviousAt = 6, kRodAt = 8, kFreeState = 9;
 
-// One step of what is learned, about rest, by central differences (it is smooth, and its values are
-// of order one): d[force; rod's velocity]/d(free state).
+// One step of the learned terms about rest, by central differences (it is smooth, and its values
+// are of order one): d[force; rod's velocity]/d(free state).
 Eigen::MatrixXd LearnedStep(const LearnedTerms& network, const SelfForce& self,
                             const ParameterSet<double>& parameters) {
   constexpr double kDifference = 1e-5;
@@ -127,7 +127,7 @@ Eigen::MatrixXd LearnedStep(const LearnedTerms& network, const SelfForce& self,
   return jacobian;
 }
 
-// What a velocity one step on has of what is perceived late: columns of the state now, and of those
+// The part of a velocity one step on that is perceived late: columns of the state now, and of those
 // before it, lag by lag.
 struct LateVelocity {
   Eigen::Matrix<double, 4, 6> by_now = Eigen::Matrix<double, 4, 6>::Zero();
@@ -300,42 +300,6 @@ std::string ListText(const std::set<double>& values) {
   return Listed(texts, "and");
 }
 
-struct Simulated {
-  std::set<double> masses, impulses;
-  int people = 0;
-};
-
-// What the simulations of one person are of, or those of a line.
-Simulated SimulatedOf(const Behaviour& behaviour, bool lines) {
-  Simulated of;
-  for (const SettlingSimulation& d : behaviour.simulations) {
-    if ((d.people > 1) != lines) continue;
-    of.masses.insert(d.mass);
-    of.impulses.insert(d.impulse);
-    of.people = d.people;
-  }
-  return of;
-}
-
-// One that is unstable at rest does not settle, whatever the simulations show by then.
-std::string AllSettleText(const Behaviour& behaviour, const ModelOptions& model) {
-  const Simulated alone = SimulatedOf(behaviour, false), line = SimulatedOf(behaviour, true);
-  std::string text =
-      "after a push of " + ListText(alone.impulses) + " N s, people of " + ListText(alone.masses) +
-      " kg " + (behaviour.unstable() ? "stand still after " : "settle within ") + WaitText(model);
-  if (line.people > 0) {
-    text += "; so do lines of " + std::to_string(line.people) + " after " +
-            ListText(line.impulses) + " N s";
-  }
-  if (behaviour.unstable()) text += ", but not for long: they are unstable at rest";
-  return text;
-}
-
-bool AnyFell(const Behaviour& behaviour) {
-  return std::any_of(behaviour.simulations.begin(), behaviour.simulations.end(),
-                     [](const SettlingSimulation& d) { return d.fell; });
-}
-
 std::string GrowthText(const Behaviour& behaviour) {
   return Rounded(behaviour.fastest_growth, 2) + " 1/s";
 }
@@ -360,16 +324,16 @@ std::string VerdictSentence(Verdict verdict, const Behaviour& behaviour,
                             const ModelOptions& model) {
   const std::string settles = "the fitted person settles within " + WaitText(model);
   const std::string stands = "the fitted person stands still after " + WaitText(model);
+  const bool falls = std::any_of(behaviour.simulations.begin(), behaviour.simulations.end(),
+                                 [](const SettlingSimulation& d) { return d.fell; });
   switch (verdict) {
     case Verdict::kSettles:
       return settles + " after every push of the settling simulations";
     case Verdict::kSlowToSettle:
       return "the fitted person settles later than " + WaitText(model) + " after some pushes";
     case Verdict::kSelfPropelling:
-      if (!behaviour.unstable() && AnyFell(behaviour)) {
-        return "the fitted person falls after some pushes";
-      }
-      return "the fitted forces drive the person after a push";
+      return !behaviour.unstable() && falls ? "the fitted person falls after some pushes"
+                                            : "the fitted forces drive the person after a push";
     case Verdict::kUnstableThoughSettled:
       return stands + ", but is unstable at rest: the slightest deviation grows at " +
              GrowthText(behaviour);
@@ -416,7 +380,23 @@ std::string VerdictRemedy(Verdict verdict, const ModelOptions& options) {
 }
 
 std::string SettlingText(const Behaviour& behaviour, const ModelOptions& model) {
-  if (behaviour.settles) return AllSettleText(behaviour, model) + "\n";
+  if (behaviour.settles) {
+    std::set<double> masses, impulses, of_lines;
+    int line = 0;
+    for (const SettlingSimulation& d : behaviour.simulations) {
+      (d.people > 1 ? of_lines : impulses).insert(d.impulse);
+      if (d.people > 1) line = d.people;
+      if (d.people == 1) masses.insert(d.mass);
+    }
+    return "after a push of " + ListText(impulses) + " N s, people of " + ListText(masses) +
+           " kg " + (behaviour.unstable() ? "stand still after " : "settle within ") +
+           WaitText(model) +
+           (line > 0 ? "; so do lines of " + std::to_string(line) + " after " + ListText(of_lines) +
+                           " N s"
+                     : "") +
+           // Whatever the simulations show by then.
+           (behaviour.unstable() ? ", but not for long: they are unstable at rest\n" : "\n");
+  }
   std::string text = "NOT SETTLING, " + WaitText(model) + " after a push:\n";
   for (const SettlingSimulation& d : behaviour.simulations) {
     if (d.settled) continue;
@@ -430,9 +410,8 @@ std::string SettlingText(const Behaviour& behaviour, const ModelOptions& model) 
 }
 
 std::string FreeModeText(const Behaviour& behaviour) {
-  const std::string verdict = behaviour.unstable() ? "UNSTABLE" : "stable";
-  return "fastest free mode at rest: " + Rounded(behaviour.fastest_growth, 3) + " 1/s (" + verdict +
-         ")\n";
+  return "fastest free mode at rest: " + Rounded(behaviour.fastest_growth, 3) + " 1/s (" +
+         (behaviour.unstable() ? "UNSTABLE" : "stable") + ")\n";
 }
 
 bool SettingsDiffer(const Behaviour& behaviour) {

@@ -1,5 +1,5 @@
-// ident: what a model does with people who are pushed and left alone: do they settle?
-// A fit can score well and never stop walking; this tells.
+// ident: people whom a model pushes and leaves alone: do they settle? A fit can score well and
+// never stop walking; this tells.
 #pragma once
 
 #include <string>

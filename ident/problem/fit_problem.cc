@@ -1,4 +1,4 @@
-// ident: what a problem knows of a point.
+// ident: the blocks of a problem, its weights, and the spread of pooled units.
 #include "ident/problem/fit_problem.h"
 
 #include <Eigen/Core>
@@ -41,24 +41,6 @@ FitProblem FitProblem::WithoutRecordings() const {
   return problem;
 }
 
-CostWeights FitProblem::weights() const {
-  CostWeights weights{options_.sigmas, options_.effective_weight, options_.settling_weight, {}};
-  for (const ParameterSpec& spec : options_.table.specs) {
-    weights.pooling_sigma.push_back(spec.pooling_sigma);
-  }
-  return weights;
-}
-
-void FitProblem::SetWeights(const CostWeights& weights) {
-  options_.sigmas = weights.sigmas;
-  options_.effective_weight = weights.effective_weight;
-  options_.settling_weight = weights.settling_weight;
-  for (size_t i = 0; i < options_.table.specs.size(); ++i) {
-    options_.table.specs[i].pooling_sigma = weights.pooling_sigma[i];
-  }
-  layouts_ = std::make_shared<Layouts>();
-}
-
 FitPoint FitProblem::NominalPoint() const {
   FitPoint point;
   for (const FittedParameter& f : map_.fitted) {
@@ -94,6 +76,11 @@ std::optional<FitPoint> FitProblem::PointAt(std::vector<double> row) const {
   if (row.size() != size) return std::nullopt;
   point.SetFlat(row);
   return point;
+}
+
+std::pair<double, double> FitProblem::Bounds(size_t fitted) const {
+  const ParameterSpec& spec = Spec(fitted);
+  return {ToFitted(spec.transform, spec.lower), ToFitted(spec.transform, spec.upper)};
 }
 
 ParameterSet<double> FitProblem::Parameters(const FitPoint& point, const std::string& unit) const {
@@ -232,32 +219,6 @@ void FitProblem::Built::AddRollout(std::unique_ptr<ceres::CostFunction> cost,
   blocks.back().cost = inside;
 }
 
-// A solver asks for the cost of a trial point, and for derivatives at an accepted one. Rollouts are
-// evaluated once and remembered, whatever the threads.
-void FitProblem::AddParameterBlocks(FitPoint* point, int num_threads, Built* built) const {
-  built->evaluation = std::make_unique<ParallelEvaluation>(num_threads);
-  ceres::Problem::Options problem;
-  problem.evaluation_callback = built->evaluation.get();
-  built->problem = std::make_unique<ceres::Problem>(problem);
-  built->evaluation->set_problem(built->problem.get());
-  auto add = [built](std::vector<double>* values) {
-    built->problem->AddParameterBlock(values->data(), static_cast<int>(values->size()));
-    built->parameter_blocks.push_back(values->data());
-  };
-  add(&point->shared);
-  for (auto& [name, values] : point->unit) add(&values);
-  for (auto& [index, values] : point->velocity) add(&values);
-  if (map_.num_weights > 0) add(&point->weights);
-  for (size_t i = 0; i < map_.fitted.size(); ++i) {
-    const ParameterSpec& spec = Spec(i);
-    const int index = static_cast<int>(i);
-    built->problem->SetParameterLowerBound(point->shared.data(), index,
-                                           ToFitted(spec.transform, spec.lower));
-    built->problem->SetParameterUpperBound(point->shared.data(), index,
-                                           ToFitted(spec.transform, spec.upper));
-  }
-}
-
 std::shared_ptr<const FitProblem::LaidOut> FitProblem::LayOut(int horizon) const {
   const std::lock_guard<std::mutex> lock(layouts_->mutex);
   std::shared_ptr<const LaidOut>& kept = layouts_->by_horizon[horizon];
@@ -308,10 +269,107 @@ std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horiz
   return FailuresOf(Rollouts(*laid_out, &copy), laid_out->side_by_side);
 }
 
+namespace {
+
+constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the others
+
+// A solver asks for the cost of a trial point, and for derivatives at an accepted one. Rollouts are
+// evaluated once and remembered, whatever the threads.
+void AddParameterBlocks(const FitProblem& problem, FitPoint* point, int num_threads,
+                        BuiltProblem* built) {
+  built->evaluation = std::make_unique<ParallelEvaluation>(num_threads);
+  ceres::Problem::Options options;
+  options.evaluation_callback = built->evaluation.get();
+  built->problem = std::make_unique<ceres::Problem>(options);
+  built->evaluation->set_problem(built->problem.get());
+  FitPoint::ForBlocks(*point, [built, point](std::vector<double>& values) {
+    if (values.empty() && &values == &point->weights) return;
+    built->problem->AddParameterBlock(values.data(), static_cast<int>(values.size()));
+    built->parameter_blocks.push_back(values.data());
+  });
+  for (int i = 0; i < problem.map().num_shared(); ++i) {
+    const auto [lower, upper] = problem.Bounds(i);
+    built->problem->SetParameterLowerBound(point->shared.data(), i, lower);
+    built->problem->SetParameterUpperBound(point->shared.data(), i, upper);
+  }
+}
+
+void AddLikelihood(const FitProblem& problem, FitPoint* point, int i, BuiltProblem* built) {
+  const std::vector<double*> blocks = problem.RecordingBlocks(point, i);
+  auto residual = std::make_unique<LikelihoodResidual>(
+      problem.LikelihoodOf(i, problem.Weight(i, 0)), blocks.data(), problem.fall_of_noise());
+  if (!residual->status().ok) {
+    built->shortened.push_back({i, residual->status()});
+    return;
+  }
+  built->offsets[i] = problem.Count(i) * residual->offset();
+  built->AddRollout(std::move(residual), blocks, i);
+}
+
+// The priors of the options. of_stage: a prior for each parameter that has none, in a stage of few
+// frames, which says nothing of some: none moves to its bounds, from which later stages may not
+// return.
+void AddPriors(const FitProblem& problem, FitPoint* point, bool of_stage, BuiltProblem* built) {
+  for (int i = 0; i < problem.map().num_shared(); ++i) {
+    const ParameterSpec& spec = problem.Spec(i);
+    if (spec.prior.has_value() == of_stage) continue;
+    const double mean = of_stage ? spec.nominal : spec.prior->mean;
+    const double sigma = !of_stage ? spec.prior->sigma / TransformSlope(spec.transform, mean)
+                         : spec.transform == Transform::kIdentity
+                             ? kStagePrior * std::max(std::abs(mean), spec.scale)
+                             : std::log(kStagePrior);
+    built->Add(std::make_unique<PriorResidual>(problem.map().num_shared(), i,
+                                               ToFitted(spec.transform, mean), sigma),
+               {point->shared.data()}, FitProblem::kPriorCluster);
+  }
+}
+
+void AddPooling(const FitProblem& problem, FitPoint* point, BuiltProblem* built) {
+  const ParameterMap& map = problem.map();
+  for (auto& [name, values] : point->unit) {
+    for (const FittedParameter& f : map.fitted) {
+      if (f.deviation < 0) continue;
+      built->Add(
+          std::make_unique<PriorResidual>(map.num_deviations, f.deviation, 0.0,
+                                          PoolingSigma(problem.options().table[f.parameter])),
+          {values.data()}, FitProblem::kPoolingCluster);
+    }
+  }
+}
+
+// unit: of the people; empty: the shared parameters.
+void AddSettling(const FitProblem& problem, FitPoint* point, const std::string& unit,
+                 BuiltProblem* built) {
+  const FitOptions& o = problem.options();
+  std::vector<double*> blocks = {point->shared.data()};
+  if (!unit.empty()) blocks.push_back(point->unit[unit].data());
+  if (problem.map().num_weights > 0) blocks.push_back(point->weights.data());
+  // Whether they can be rolled out here: Ceres cannot start from a block that fails.
+  const auto add = [&](const std::vector<Scene>& scenes) {
+    auto residual = std::make_unique<SettlingResidual>(
+        MakeSettlingProblem(scenes, o.model, problem.map(), o.settling_weight, unit));
+    std::vector<double> values(residual->num_residuals());
+    if (!residual->Evaluate(blocks.data(), values.data(), nullptr)) return false;
+    built->AddRollout(std::move(residual), blocks, FitProblem::kSettlingCluster);
+    return true;
+  };
+  for (const std::vector<Scene>& scenes : SettlingScenes(o.model)) {
+    if (HasLanes(scenes[0], o.model) && add(scenes)) continue;
+    for (const Scene& scene : scenes) {
+      if (!add({scene})) ++built->rests_left_out;
+    }
+  }
+}
+
+}  // namespace
+
+// All that a fit minimizes. A new family of residuals is a call here, its cost function in a file
+// of its own, and an option for its weight (ident/parameters/option_table.cc); solver, covariance,
+// profiles and bootstrap take it from here.
 FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_network,
                                     int num_threads, bool all_inside) const {
   Built built;
-  AddParameterBlocks(point, num_threads, &built);
+  AddParameterBlocks(*this, point, num_threads, &built);
   const std::shared_ptr<const LaidOut> laid_out = LayOut(horizon);
   built.rollouts = Rollouts(*laid_out, point);
   built.side_by_side = {laid_out, &laid_out->side_by_side};
@@ -328,21 +386,25 @@ FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_netw
   }
   built.evaluation->set_side_by_side(built.side_by_side);
 
-  FamilyPlace place{*this, point, &built};
-  const auto add = [&](ResidualFamily::Per per) {
-    for (const ResidualFamily& family : ResidualFamilies()) {
-      if (family.per == per && family.on(options_, horizon)) family.add(family, place);
-    }
-  };
   for (int i = 0; i < static_cast<int>(recordings().size()); ++i) {
+    const auto& [problem, blocks] = built.rollouts[i];
     if (Count(i) == 0) continue;
-    place.recording = i;
-    add(ResidualFamily::kRecording);
+    if (options_.likelihood != Likelihood::kTrajectory) {
+      AddLikelihood(*this, point, i, &built);
+    } else if (problem != nullptr) {
+      built.AddRollout(std::make_unique<CondensedRollout>(problem), blocks, i);
+    }
   }
-  add(ResidualFamily::kPoint);
-  for (const std::string& unit : SettlingUnits(*point)) {
-    place.unit = unit;
-    add(ResidualFamily::kUnit);
+  AddPriors(*this, point, false, &built);
+  AddPooling(*this, point, &built);
+  if (options_.network_prior > 0.0 && map_.num_weights > 0) {
+    built.Add(std::make_unique<RidgeResidual>(map_.num_weights, options_.network_prior),
+              {point->weights.data()}, kNetworkCluster);
+  }
+  if (horizon != 0) {
+    AddPriors(*this, point, true, &built);
+  } else if (options_.settling_weight > 0.0) {
+    for (const std::string& unit : SettlingUnits(*point)) AddSettling(*this, point, unit, &built);
   }
   if (hold_network && map_.num_weights > 0) {
     built.problem->SetParameterBlockConstant(point->weights.data());
@@ -352,175 +414,38 @@ FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_netw
 
 namespace {
 
-constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the others
-
-using Family = ResidualFamily;
-using Place = FamilyPlace;
-using Options = FitOptions;
-
-bool Rolls(const Options& o) { return o.likelihood == Likelihood::kTrajectory; }
-
-void AddTrajectory(const Family&, const Place& at) {
-  const auto& [problem, blocks] = at.rollout();
-  if (problem == nullptr) return;
-  at.built->AddRollout(std::make_unique<CondensedRollout>(problem), blocks, at.recording);
-}
-
-void AddLikelihood(const Family&, const Place& at) {
-  const FitProblem& problem = at.problem;
-  const int i = at.recording;
-  const std::vector<double*> blocks = problem.RecordingBlocks(at.point, i);
-  auto residual = std::make_unique<LikelihoodResidual>(
-      problem.LikelihoodOf(i, problem.Weight(i, 0)), blocks.data(), problem.fall_of_noise());
-  if (!residual->status().ok) {
-    at.built->shortened.push_back({i, residual->status()});
-    return;
-  }
-  at.built->offsets[i] = problem.Count(i) * residual->offset();
-  at.built->AddRollout(std::move(residual), blocks, i);
-}
-
-// On the i-th shared value, natural mean and sigma on the fitted scale.
-void AddPrior(const Family& family, const Place& at, int i, double mean, double sigma) {
-  const Transform transform = at.problem.map().fitted[i].transform;
-  at.built->Add(std::make_unique<PriorResidual>(static_cast<int>(at.point->shared.size()), i,
-                                                ToFitted(transform, mean), sigma),
-                {at.point->shared.data()}, family.cluster);
-}
-
-void AddPriors(const Family& family, const Place& at) {
-  for (int i = 0; i < static_cast<int>(at.point->shared.size()); ++i) {
-    const ParameterSpec& spec = at.problem.Spec(i);
-    if (!spec.prior) continue;
-    AddPrior(family, at, i, spec.prior->mean,
-             spec.prior->sigma / TransformSlope(spec.transform, spec.prior->mean));
-  }
-}
-
-void AddPooling(const Family& family, const Place& at) {
-  const ParameterMap& map = at.problem.map();
-  for (auto& [name, values] : at.point->unit) {
-    for (const FittedParameter& f : map.fitted) {
-      if (f.deviation < 0) continue;
-      at.built->Add(
-          std::make_unique<PriorResidual>(map.num_deviations, f.deviation, 0.0,
-                                          PoolingSigma(at.problem.options().table[f.parameter])),
-          {values.data()}, family.cluster);
-    }
-  }
-}
-
-void AddNetworkPrior(const Family& family, const Place& at) {
-  const int weights = at.problem.map().num_weights;
-  if (weights == 0) return;
-  at.built->Add(std::make_unique<RidgeResidual>(weights, at.problem.options().network_prior),
-                {at.point->weights.data()}, family.cluster);
-}
-
-// A stage of few frames says nothing of some parameters: what has no prior gets one, so that it
-// does not move to its bounds, from which later stages may not return.
-void AddStagePriors(const Family& family, const Place& at) {
-  for (int i = 0; i < static_cast<int>(at.point->shared.size()); ++i) {
-    const ParameterSpec& spec = at.problem.Spec(i);
-    if (spec.prior) continue;
-    AddPrior(family, at, i, spec.nominal,
-             spec.transform == Transform::kIdentity
-                 ? kStagePrior * std::max(std::abs(spec.nominal), spec.scale)
-                 : std::log(kStagePrior));
-  }
-}
-
-void AddSettling(const Family& family, const Place& at) {
-  const Options& o = at.problem.options();
-  std::vector<double*> blocks = {at.point->shared.data()};
-  if (!at.unit.empty()) blocks.push_back(at.point->unit[at.unit].data());
-  if (at.problem.map().num_weights > 0) blocks.push_back(at.point->weights.data());
-  // Whether they can be rolled out here: Ceres cannot start from a block that fails.
-  const auto add = [&](const std::vector<Scene>& scenes) {
-    auto residual = std::make_unique<SettlingResidual>(
-        MakeSettlingProblem(scenes, o.model, at.problem.map(), o.settling_weight, at.unit));
-    std::vector<double> values(residual->num_residuals());
-    if (!residual->Evaluate(blocks.data(), values.data(), nullptr)) return false;
-    at.built->AddRollout(std::move(residual), blocks, family.cluster);
-    return true;
-  };
-  for (const std::vector<Scene>& scenes : SettlingScenes(o.model)) {
-    if (HasLanes(scenes[0], o.model) && add(scenes)) continue;
-    for (const Scene& scene : scenes) {
-      if (!add({scene})) ++at.built->rests_left_out;
-    }
-  }
-}
-
-}  // namespace
-
-const std::vector<ResidualFamily>& ResidualFamilies() {
-  constexpr int kOwn = 0;  // the recording's
-  static const std::vector<ResidualFamily> families = {
-      {"trajectory", Family::kRecording, kOwn, [](const Options& o, int) { return Rolls(o); },
-       AddTrajectory},
-      {"likelihood", Family::kRecording, kOwn, [](const Options& o, int) { return !Rolls(o); },
-       AddLikelihood},
-      {"priors", Family::kPoint, FitProblem::kPriorCluster,
-       [](const Options&, int) { return true; }, AddPriors},
-      {"pooling", Family::kPoint, FitProblem::kPoolingCluster,
-       [](const Options&, int) { return true; }, AddPooling},
-      {"network prior", Family::kPoint, FitProblem::kNetworkCluster,
-       [](const Options& o, int) { return o.network_prior > 0.0; }, AddNetworkPrior},
-      {"stage priors", Family::kPoint, FitProblem::kPriorCluster,
-       [](const Options&, int horizon) { return horizon != 0; }, AddStagePriors},
-      {"settling", Family::kUnit, FitProblem::kSettlingCluster,
-       [](const Options& o, int horizon) { return horizon == 0 && o.settling_weight > 0.0; },
-       AddSettling},
-  };
-  return families;
-}
-
-namespace {
-
 constexpr int kMaxSteps = 200;
 constexpr double kSmallChange = 1e-3;       // of a spread, that ends the steps
 constexpr double kLeastInformation = 1e-6;  // units' worth; below it nothing is known of a spread
 
-// Hessian and gradient of the cost less the pooling priors, by deviation; everything else is
-// integrated out.
-struct DeviationPosterior {
-  Eigen::MatrixXd hessian;
-  Eigen::VectorXd gradient, at;  // the gradient at these deviations
-};
-
-DeviationPosterior IntegrateOut(const FitProblem& problem, const FitPoint& point,
-                                const Eigen::VectorXd& pooling_precision) {
+// Hessian and gradient of the cost less the pooling priors by the deviations `at`; everything else
+// is integrated out.
+SecondOrder IntegrateOut(const FitProblem& problem, const FitPoint& point,
+                         const Eigen::VectorXd& pooling_precision, const Eigen::VectorXd& at) {
   const ResidualRows rows = EvaluateRows(problem, point);
-  const std::vector<double> flat = point.Flat();
   const Eigen::Index shared = static_cast<Eigen::Index>(point.shared.size());
-  const Eigen::Index deviations = pooling_precision.size();
-  const Eigen::Index size = static_cast<Eigen::Index>(flat.size());
+  const Eigen::Index deviations = at.size(), size = rows.jacobian.cols();
+  const Eigen::Index rest = size - deviations;
   // Deviations first, then the rest.
   Eigen::MatrixXd jacobian(rows.jacobian.rows(), size);
   jacobian << rows.jacobian.middleCols(shared, deviations), rows.jacobian.leftCols(shared),
-      rows.jacobian.rightCols(size - shared - deviations);
+      rows.jacobian.rightCols(rest - shared);
   const Eigen::MatrixXd hessian = jacobian.transpose() * jacobian;
   const Eigen::VectorXd gradient = jacobian.transpose() * rows.residuals;
-
-  const Eigen::Index rest = size - deviations;
   Eigen::MatrixXd nuisance = hessian.bottomRightCorner(rest, rest);
   nuisance.diagonal() *= 1.0 + 1e-12;  // a direction that nothing determines
   const Eigen::MatrixXd cross = hessian.bottomLeftCorner(rest, deviations);
-  DeviationPosterior p;
-  p.at = Eigen::Map<const Eigen::VectorXd>(flat.data() + shared, deviations);
-  p.hessian = hessian.topLeftCorner(deviations, deviations) -
+  return {hessian.topLeftCorner(deviations, deviations) -
               cross.transpose() * SolveSymmetric(nuisance, cross) -
-              Eigen::MatrixXd(pooling_precision.asDiagonal());
-  p.gradient = gradient.head(deviations) -
-               cross.transpose() * SolveSymmetric(nuisance, Eigen::VectorXd(gradient.tail(rest))) -
-               pooling_precision.cwiseProduct(p.at);
-  return p;
+              Eigen::MatrixXd(pooling_precision.asDiagonal()),
+          gradient.head(deviations) -
+              cross.transpose() * SolveSymmetric(nuisance, Eigen::VectorXd(gradient.tail(rest))) -
+              pooling_precision.cwiseProduct(at)};
 }
 
 }  // namespace
 
-double UpdatePoolingSpread(const FitProblem& problem, const FitPoint& point, CostWeights* weights) {
+double UpdatePoolingSpread(const FitProblem& problem, const FitPoint& point, FitOptions* weights) {
   const ParameterMap& map = problem.map();
   if (map.num_deviations == 0 || problem.options().pooling_sigma) return 0.0;
   const Eigen::Index parameters = map.num_deviations;
@@ -538,15 +463,20 @@ double UpdatePoolingSpread(const FitProblem& problem, const FitPoint& point, Cos
   const auto precision = [&sigma, units]() -> Eigen::VectorXd {
     return sigma.array().square().inverse().matrix().replicate(units, 1);
   };
-  const DeviationPosterior p = IntegrateOut(problem, point, precision());
+  Eigen::VectorXd at(units * parameters);
+  Eigen::Index next = 0;
+  for (const auto& [unit, deviations] : point.unit) {
+    for (double deviation : deviations) at[next++] = deviation;
+  }
+  const SecondOrder p = IntegrateOut(problem, point, precision(), at);
 
   double change = 1.0;
   for (int step = 0; step < kMaxSteps && change > kSmallChange; ++step) {
     const Eigen::VectorXd prior = precision();
-    const Eigen::MatrixXd hessian = p.hessian + Eigen::MatrixXd(prior.asDiagonal());
+    const Eigen::MatrixXd hessian = p.information + Eigen::MatrixXd(prior.asDiagonal());
     const Eigen::MatrixXd covariance = SolveSymmetric(
         hessian, Eigen::MatrixXd(Eigen::MatrixXd::Identity(hessian.rows(), hessian.rows())));
-    const Eigen::VectorXd mean = p.at - covariance * (p.gradient + prior.cwiseProduct(p.at));
+    const Eigen::VectorXd mean = at - covariance * (p.gradient + prior.cwiseProduct(at));
     const Eigen::VectorXd last = sigma;
     for (Eigen::Index k = 0; k < parameters; ++k) {
       double squares = 0.0, known = 0.0;
@@ -562,7 +492,7 @@ double UpdatePoolingSpread(const FitProblem& problem, const FitPoint& point, Cos
     change = (sigma.cwiseQuotient(last).array() - 1.0).abs().maxCoeff();
   }
   for (Eigen::Index k = 0; k < parameters; ++k) {
-    weights->pooling_sigma[ids[k]] = sigma[k] / typical[k];
+    weights->table[ids[k]].pooling_sigma = sigma[k] / typical[k];
   }
   return (sigma.cwiseQuotient(before).array() - 1.0).abs().maxCoeff();
 }

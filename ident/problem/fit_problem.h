@@ -22,18 +22,8 @@
 
 namespace pushid {
 
-// The frame at which the first push begins, or the ground leaves its place; 0 where nothing
-// happens.
+// The first frame of a push, or at which the ground leaves its place; 0 where nothing happens.
 int PushFrame(const PendulumRecording& recording);
-
-// How much each part of a problem's cost weighs: what a fit estimates between two solves. Fields as
-// those of FitOptions and ParameterSpec.
-struct CostWeights {
-  ResidualSigmas sigmas;
-  double effective_weight = 0.0;
-  double settling_weight = 0.0;
-  std::vector<double> pooling_sigma;  // of every row of the table
-};
 
 // A Ceres problem over *point (which must outlive it). Recordings that fail at the point are held
 // to the frames before their failure; `shortened` names them.
@@ -51,17 +41,13 @@ struct BuiltProblem {
   // By recording; no problem where it does not count, or fails in its first step.
   std::vector<RolloutAt> rollouts;
   std::shared_ptr<const std::vector<SideBySide>> side_by_side =
-      std::make_shared<const std::vector<SideBySide>>();  // of these, those with lanes
+      std::make_shared<const std::vector<SideBySide>>();  // the rollouts with lanes
   std::vector<double*> parameter_blocks;                  // in the order of FitPoint::Flat
   std::vector<FailedRollout> shortened;
   // By recording: its cost less this is its negative log likelihood, up to a constant that no
   // point changes (residuals/cost_functions/likelihood_residual.h): only so do costs of problems
   // built at different points compare. Empty for rollouts.
   std::map<int, double> offsets;
-  double OffsetOf(int recording) const {
-    const auto found = offsets.find(recording);
-    return found == offsets.end() ? 0.0 : found->second;
-  }
   double Offset() const {
     double sum = 0.0;
     for (const auto& [recording, offset] : offsets) sum += offset;
@@ -86,26 +72,27 @@ class FitProblem {
   // Its priors and demands alone.
   FitProblem WithoutRecordings() const;
 
-  CostWeights weights() const;
-  // Points of the problem stay points of it.
-  void SetWeights(const CostWeights& weights);
-  void set_settling_weight(double weight) { options_.settling_weight = weight; }
-  void set_function_tolerance(double tolerance) { options_.function_tolerance = tolerance; }
-  void set_max_iterations(int most) { options_.max_iterations = most; }
-  void set_gradient_tolerance(double tolerance) { options_.gradient_tolerance = tolerance; }
-
+  const FitOptions& options() const { return options_; }
+  // Nothing may change but weights, nothing that points or recordings depend on.
+  void SetWeights(const FitOptions& weights) {
+    layouts_ = std::make_shared<Layouts>();
+    options_ = weights;
+  }
+  // Tolerances, iterations, and the weight of the demand to settle alone may change.
+  FitOptions* mutable_options() { return &options_; }
   const ParameterMap& map() const { return map_; }
   // The table's row of a fitted parameter.
   const ParameterSpec& Spec(size_t fitted) const {
     return options_.table[map_.fitted[fitted].parameter];
   }
+  // Its lower and upper bound, on the fitted scale.
+  std::pair<double, double> Bounds(size_t fitted) const;
   // Where a parameter stands among the fitted ones; as many as these are where it is held.
   size_t FittedIndex(Parameter id) const;
   // As the model sees them: in axes along their pushes, where it is the same in all directions.
   const std::vector<PendulumRecording>& recordings() const { return *recordings_; }
-  const FitOptions& options() const { return options_; }
-  // Frames of a recording that a horizon means: so many from its first push on, since before it
-  // nothing is learned; 0: all.
+  // The frames of a recording in a horizon: so many from its first push on, since before it nothing
+  // is learned; 0: all.
   int Frames(int recording, int horizon) const {
     return horizon == 0 ? 0 : horizon + PushFrame(recordings()[recording]);
   }
@@ -114,8 +101,8 @@ class FitProblem {
   const std::vector<int>& counts() const { return counts_; }  // empty: each once
   int Count(int recording) const { return counts_.empty() ? 1 : counts_[recording]; }
 
-  // Shared values at the table's nominal values, deviations where the options start them,
-  // velocities as the scenes hold them, weights as the options' network holds them.
+  // The table's nominal values, and deviations, velocities and weights where options and scenes
+  // start them.
   FitPoint NominalPoint() const;
 
   // The point whose Flat() is `row`, weights excepted where it has none; none where sizes differ.
@@ -129,11 +116,11 @@ class FitProblem {
   // The options with the network of a point.
   ModelOptions ModelAt(const FitPoint& point) const;
 
-  // Units whose settling is simulated: the shared parameters (""), and each setting or
-  // condition where these differ in what acts then.
+  // Units whose settling is simulated: the shared parameters (""), and each setting or condition
+  // where these differ in what acts then.
   std::vector<std::string> SettlingUnits(const FitPoint& point) const;
 
-  // What people do after a push at a point; where settings or conditions differ, in each.
+  // After a push at a point; where settings or conditions differ, in each.
   Behaviour BehaviourAt(const FitPoint& point) const;
 
   // Recordings whose rollout over `horizon` frames (0: all) leaves the domain at a point; none
@@ -143,16 +130,15 @@ class FitProblem {
   // The deviance of all recordings, as they count, by a likelihood of single steps.
   Deviance DevianceAt(const FitPoint& point) const;
 
-  // How many residuals of a recording are of motion; those of platforms follow.
+  // Residuals of a recording's motion; those of platforms follow.
   size_t NumMotionRows(int recording) const;
 
-  // Clusters of what is not data.
-  static constexpr int kPriorCluster = -1;     // priors on parameters
-  static constexpr int kPoolingCluster = -2;   // what ties the units' deviations to zero
-  static constexpr int kSettlingCluster = -3;  // the demand that people settle
-  static constexpr int kNetworkCluster = -4;   // what ties a network's weights to zero
+  // Clusters of rows that are no data: priors on parameters; ties of the units' deviations, and of
+  // a network's weights, to zero; the demand that people settle.
+  static constexpr int kPriorCluster = -1, kPoolingCluster = -2, kSettlingCluster = -3,
+                       kNetworkCluster = -4;
 
-  // By how much the logarithm of the noise may fall in a solve before its rows end
+  // The fall of the noise's logarithm in a solve that ends its rows
   // (residuals/cost_functions/likelihood_residual.h): kFisherShift, where J'J is the Fisher
   // information, or more far from the optimum.
   void set_fall_of_noise(double logarithm) { fall_of_noise_ = logarithm; }
@@ -169,7 +155,6 @@ class FitProblem {
               bool all_inside = false) const;
 
  private:
-  void AddParameterBlocks(FitPoint* point, int num_threads, Built* built) const;
   // The rollouts of all recordings over `horizon` frames, and those with lanes side by side: the
   // same at every point, until weights or counts change.
   struct LaidOut {
@@ -213,44 +198,9 @@ class FitProblem {
 // Bounds of s, in ParameterSpec::pooling_sigma's units: 1 % and a factor of twenty.
 inline constexpr double kLeastPoolingSigma = 0.01, kLargestPoolingSigma = 3.0;
 
-// Sets the weights' pooling_sigma of every pooled parameter to the s that the units tell of at a
+// Sets the pooling_sigma of every pooled parameter to the s that the units tell of at a
 // point (best the optimum of the cost as the problem weighs it). Returns the largest relative
 // change: solve and update until it is small.
-double UpdatePoolingSpread(const FitProblem& problem, const FitPoint& point, CostWeights* weights);
-
-// What a fit minimizes, family by family: each row says when a family is part of the cost
-// and adds its residual blocks (residuals/cost_functions/) to the Ceres problem.
-//
-// A new family is a row of the table in fit_problem.cc with the two functions that it names,
-// its cost function in a file of its own, and an option for its weight
-// (ident/parameters/option_table.cc). Solver, covariance, profiles and bootstrap take it from here.
-
-// Where a family adds blocks.
-struct FamilyPlace {
-  const FitProblem& problem;
-  FitPoint* point;
-  FitProblem::Built* built;
-  int recording = -1;     // of a family of recordings
-  std::string unit = {};  // of a family of units; empty: the shared parameters
-
-  // The recording's rollout while it stays within the domain; no problem: not even one frame.
-  const RolloutAt& rollout() const { return built->rollouts[recording]; }
-};
-
-struct ResidualFamily {
-  enum Per {
-    kRecording,  // added for each recording that counts
-    kPoint,      // once
-    kUnit        // for each unit whose settling is simulated (FitProblem::SettlingUnits)
-  };
-  const char* name;
-  Per per;
-  int cluster;  // of its rows, one of FitProblem's; of recordings: their index
-  bool (*on)(const FitOptions& options, int horizon);
-  void (*add)(const ResidualFamily& family, const FamilyPlace& place);
-};
-
-// All of them, in the order of their blocks.
-const std::vector<ResidualFamily>& ResidualFamilies();
+double UpdatePoolingSpread(const FitProblem& problem, const FitPoint& point, FitOptions* weights);
 
 }  // namespace pushid

@@ -22,9 +22,8 @@ std::vector<Fold> StratifiedFolds(const std::vector<PendulumRecording>& recordin
                                   int repeats, uint64_t seed) {
   std::map<std::array<std::string, 3>, std::vector<int>> strata;
   for (int i = 0; i < static_cast<int>(recordings.size()); ++i) {
-    strata[{recordings[i].labels.setting(), recordings[i].labels.magnitude(),
-            PushedSubject(recordings[i])}]
-        .push_back(i);
+    const PendulumRecording& r = recordings[i];
+    strata[{r.labels.setting(), r.labels.magnitude(), PushedSubject(r)}].push_back(i);
   }
   std::vector<Fold> folds;
   Random random(seed);
@@ -101,11 +100,24 @@ Result<std::vector<Fold>> DrawFolds(const std::vector<PendulumRecording>& record
   return folds;
 }
 
-// A fit to a copy of what is held out has seen it.
-void HoldOutCopies(const std::vector<PendulumRecording>& recordings, std::vector<Fold>* folds) {
+using Json = nlohmann::ordered_json;
+
+// The member of an object; null where it has none.
+const Json& Member(const Json& object, const char* key) {
+  static const Json none;
+  return object.is_object() && object.contains(key) ? object[key] : none;
+}
+
+}  // namespace
+
+Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& recordings,
+                                    FoldScheme scheme, int num_folds, int repeats, uint64_t seed) {
+  Result<std::vector<Fold>> folds = DrawFolds(recordings, scheme, num_folds, repeats, seed);
+  if (!folds.ok()) return folds;
+  // A fit to a copy of what is held out has seen it.
   std::vector<int> root = CopyOf(recordings);
   for (size_t i = 0; i < root.size(); ++i) root[i] = root[i] < 0 ? static_cast<int>(i) : root[i];
-  for (Fold& fold : *folds) {
+  for (Fold& fold : folds.value()) {
     std::set<int> roots;
     for (int i : fold.held_out) roots.insert(root[i]);
     std::vector<int> all;
@@ -114,51 +126,6 @@ void HoldOutCopies(const std::vector<PendulumRecording>& recordings, std::vector
     }
     if (all.size() < recordings.size()) fold.held_out = std::move(all);
   }
-}
-
-using Indices = std::map<std::string, int>;
-
-std::string Text(const nlohmann::ordered_json& object, const char* key) {
-  if (!object.is_object() || !object.contains(key) || !object[key].is_string()) return "";
-  return object[key].get<std::string>();
-}
-
-// at: the fold's place.
-Result<Fold> ReadFold(const JsonDocument& document, const std::string& at, const Indices& indices) {
-  const nlohmann::ordered_json::json_pointer place(at);
-  const nlohmann::ordered_json& json = document.content[place];
-  Fold fold;
-  fold.name = Text(json, "name");
-  if (fold.name.empty()) return document.ErrorAt(at, "a fold needs a name, as a text");
-  const std::string list = at + "/held_out";
-  if (!json.contains("held_out") || !json["held_out"].is_array()) {
-    return document.ErrorAt(list, "a fold needs held_out, a list of ids of recordings");
-  }
-  for (std::size_t i = 0; i < json["held_out"].size(); ++i) {
-    const nlohmann::ordered_json& id = json["held_out"][i];
-    const auto found = id.is_string() ? indices.find(id.get<std::string>()) : indices.end();
-    if (found == indices.end()) {
-      return document.ErrorAt(list + "/" + std::to_string(i),
-                              "no recording that was loaded has the id " + id.dump());
-    }
-    fold.held_out.push_back(found->second);
-  }
-  std::sort(fold.held_out.begin(), fold.held_out.end());
-  fold.held_out.erase(std::unique(fold.held_out.begin(), fold.held_out.end()), fold.held_out.end());
-  if (fold.held_out.empty() || fold.held_out.size() == indices.size()) {
-    return document.ErrorAt(list, std::string("the fold '") + fold.name + "' holds out " +
-                                      (fold.held_out.empty() ? "nothing" : "everything") +
-                                      "; some recordings must be fitted and others scored");
-  }
-  return fold;
-}
-
-}  // namespace
-
-Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& recordings,
-                                    FoldScheme scheme, int num_folds, int repeats, uint64_t seed) {
-  Result<std::vector<Fold>> folds = DrawFolds(recordings, scheme, num_folds, repeats, seed);
-  if (folds.ok()) HoldOutCopies(recordings, &folds.value());
   return folds;
 }
 
@@ -172,27 +139,45 @@ std::vector<int> Others(const std::vector<int>& held_out, int total) {
 
 Result<std::vector<Fold>> ReadFolds(const std::string& path,
                                     const std::vector<PendulumRecording>& recordings) {
-  Result<JsonDocument> document = ReadJsonDocument(path);
-  if (!document.ok()) return document.error();
-  const nlohmann::ordered_json& content = document.value().content;
-  if (!content.is_object() || !content.contains("folds") || !content["folds"].is_array() ||
-      content["folds"].empty()) {
-    return document.value().ErrorAt("/folds", "the file needs folds, a list of at least one");
+  const Result<JsonDocument> read = ReadJsonDocument(path);
+  if (!read.ok()) return read.error();
+  const JsonDocument& document = read.value();
+  const Json& list = Member(document.content, "folds");
+  if (!list.is_array() || list.empty()) {
+    return document.ErrorAt("/folds", "the file needs folds, a list of at least one");
   }
-  Indices indices;
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    indices[recordings[i].id] = static_cast<int>(i);
-  }
+  std::map<Json, int> indices;  // by id
+  for (size_t i = 0; i < recordings.size(); ++i) indices[recordings[i].id] = static_cast<int>(i);
   std::vector<Fold> folds;
   std::set<std::string> names;
-  for (std::size_t i = 0; i < content["folds"].size(); ++i) {
-    const std::string at = "/folds/" + std::to_string(i);
-    Result<Fold> fold = ReadFold(document.value(), at, indices);
-    if (!fold.ok()) return fold.error();
-    if (!names.insert(fold.value().name).second) {
-      return document.value().ErrorAt(at, "there is a fold '" + fold.value().name + "' before");
+  for (size_t f = 0; f < list.size(); ++f) {
+    const std::string at = "/folds/" + std::to_string(f), of_ids = at + "/held_out";
+    const Json& name = Member(list[f], "name");
+    const Json& ids = Member(list[f], "held_out");
+    if (!name.is_string() || name == "") {
+      return document.ErrorAt(at, "a fold needs a name, as a text");
     }
-    folds.push_back(std::move(fold.value()));
+    if (!ids.is_array()) {
+      return document.ErrorAt(of_ids, "a fold needs held_out, a list of ids of recordings");
+    }
+    std::set<int> held_out;
+    for (size_t i = 0; i < ids.size(); ++i) {
+      const auto found = indices.find(ids[i]);
+      if (found == indices.end()) {
+        return document.ErrorAt(of_ids + "/" + std::to_string(i),
+                                "no recording that was loaded has the id " + ids[i].dump());
+      }
+      held_out.insert(found->second);
+    }
+    if (held_out.empty() || held_out.size() == indices.size()) {
+      return document.ErrorAt(of_ids, "the fold '" + std::string(name) + "' holds out " +
+                                          (held_out.empty() ? "nothing" : "everything") +
+                                          "; some recordings must be fitted and others scored");
+    }
+    if (!names.insert(name).second) {
+      return document.ErrorAt(at, "there is a fold '" + std::string(name) + "' before");
+    }
+    folds.push_back({name, {held_out.begin(), held_out.end()}});
   }
   return folds;
 }

@@ -1,4 +1,4 @@
-// ident: which recordings are held out together.
+// ident: recordings that are held out together.
 //
 // Stratified by setting, strength and subject, so that every fold holds out its share of each,
 // repeated with new shuffles; the recordings of a setting dealt out in the manifest's order,
@@ -53,15 +53,11 @@ std::vector<Value> Without(const std::vector<Value>& all, const std::vector<int>
   return Picked(all, Others(held_out, static_cast<int>(all.size())));
 }
 
-// Folds that a file gives, such as a published split or quarters of the recordings.
-//
+// Folds that a file gives, such as a published split or quarters of the recordings:
 //   {"folds": [{"name": "1", "held_out": ["single_X05_00", ...]}, ...]}
-//
-// Each fold is fitted to all recordings that it does not hold out; the same recording may be held
-// out by several folds, or by none.
-
-// Errors: those of ReadJsonDocument; at its place (file:line) what is no fold, a name given twice,
-// a recording that is not there, and a fold that holds out nothing or everything.
+// A recording may be held out by several folds, or by none. Errors: those of ReadJsonDocument; at
+// its place (file:line) what is no fold, a name given twice, a recording that is not there, and a
+// fold that holds out nothing or everything.
 Result<std::vector<Fold>> ReadFolds(const std::string& path,
                                     const std::vector<PendulumRecording>& recordings);
 

@@ -18,13 +18,7 @@ constexpr int kSteps = 4000;
 
 // One plane's part of the derivatives: rows of cart and angle, columns e, v, w.
 Eigen::Matrix<double, 2, 3> InPlane(const RestJacobian& rest, int plane) {
-  Eigen::Matrix<double, 2, 3> part;
-  for (int row = 0; row < 2; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      part(row, column) = rest.by_state(2 * row + plane, 2 * column + plane);
-    }
-  }
-  return part;
+  return rest.by_state(Eigen::seqN(plane, 2, 2), Eigen::seqN(plane, 3, 2));
 }
 
 // By the angle at Chebyshev's points of [-1, 0], 0 first: the derivative of what goes through them.
@@ -57,9 +51,6 @@ Eigen::RowVectorXd Interpolation(const Eigen::VectorXd& x, double at) {
   }
   return weight / weight.sum();
 }
-
-// In (-pi, pi].
-double Wrapped(double angle) { return std::remainder(angle, 2.0 * M_PI); }
 
 }  // namespace
 
@@ -134,17 +125,13 @@ LoopAnswer LinearLoop::Answer(Disturbance disturbance, double hz) const {
   return {at[1] + (tilts ? 1.0 : 0.0), torque};
 }
 
-// The ankles' late torque at a place that oscillates.
-std::complex<double> LinearLoop::Controller(const Complex& s, const Eigen::Vector2cd& place) const {
-  const Complex felt =
-      ankle_(1, 0) * place[1] + s * (ankle_(1, 1) * place[0] + ankle_(1, 2) * place[1]);
-  return std::exp(-s * ankle_delay_) * felt;
-}
-
 std::complex<double> LinearLoop::LoopGain(double hz) const {
   const Complex s(0.0, 2.0 * M_PI * hz);
   const Eigen::Vector2cd torque{0.0, 1.0};
-  return -Controller(s, Impedance(s, false).inverse() * torque);
+  const Eigen::Vector2cd place = Impedance(s, false).inverse() * torque;
+  const Complex felt =
+      ankle_(1, 0) * place[1] + s * (ankle_(1, 1) * place[0] + ankle_(1, 2) * place[1]);
+  return -(std::exp(-s * ankle_delay_) * felt);
 }
 
 std::vector<std::complex<double>> LinearLoop::Modes() const {
@@ -210,7 +197,7 @@ void LinearLoop::FindMargins(LoopNumbers* numbers) const {
     const Complex next = LoopGain(next_hz);
     if ((over_one(gain) > 0.0) != (over_one(next) > 0.0)) {
       const double at = root(hz, next_hz, over_one);
-      const double margin = Wrapped(std::arg(LoopGain(at)) + M_PI);
+      const double margin = std::remainder(std::arg(LoopGain(at)) + M_PI, 2.0 * M_PI);
       if (!numbers->phase_margin || std::abs(margin) < std::abs(*numbers->phase_margin)) {
         numbers->phase_margin = std::abs(margin);
         numbers->crossover_hz = at;

@@ -32,7 +32,7 @@
 
 namespace pushid {
 
-// What moves a person.
+// Causes of motion of a person who stands.
 enum class Disturbance { kGroundShift, kGroundTilt };
 constexpr EnumNames<Disturbance, 2> Names(Disturbance) {
   return {{{"ground_shift", Disturbance::kGroundShift}, {"ground_tilt", Disturbance::kGroundTilt}}};
@@ -80,7 +80,6 @@ class LinearLoop {
 
   // (M s^2 - J(s)), with the ankles' late part or without.
   Matrix2c Impedance(const Complex& s, bool with_ankle) const;
-  Complex Controller(const Complex& s, const Eigen::Vector2cd& place) const;
   // Rates of the modes, 1/s: of [e, v, w], with what is late.
   std::vector<Complex> Modes() const;
   void FindMargins(LoopNumbers* numbers) const;

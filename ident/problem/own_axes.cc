@@ -10,22 +10,6 @@
 namespace pushid {
 namespace {
 
-void TurnBack(double angle, RolloutPath<double>* path, FrameTable<NetForce<double>>* trace,
-              int frames) {
-  const TurnedAxes axes(-angle);
-  for (int t = 0; t < frames; ++t) {
-    for (int n = 0; n < path->num_people(); ++n) {
-      PendulumState<double>& state = path->At(t, n);
-      if (trace != nullptr) {
-        for (Vector4<double>& part : trace->At(t, n).parts) part = axes.Force(state.q, part);
-      }
-      state.qd = axes.PoseJacobian(state.q) * state.qd;
-      state.q = axes.Pose(state.q);
-      state.feet.apart = axes.Horizontal(state.feet.apart);
-    }
-  }
-}
-
 // The scene with the bodies of a model.
 Scene WithBodies(Scene scene, const PendulumRecording& recording, BodyModel body) {
   if (body != BodyModel::kAnthropometric) return scene;
@@ -71,7 +55,19 @@ RolloutStatus RollInOwnAxes(const PendulumRecording& recording, const ModelOptio
                             RolloutPath<double>* path, FrameTable<NetForce<double>>* trace) {
   const double angle = OwnAxes(recording, options.directions);
   const RolloutStatus status = roll(SceneInOwnAxes(recording, options));
-  if (angle != 0.0) TurnBack(angle, path, trace, status.ok ? num_frames : status.frame);
+  if (angle == 0.0) return status;
+  const TurnedAxes back(-angle);
+  for (int t = 0; t < (status.ok ? num_frames : status.frame); ++t) {
+    for (int n = 0; n < path->num_people(); ++n) {
+      PendulumState<double>& state = path->At(t, n);
+      if (trace != nullptr) {
+        for (Vector4<double>& part : trace->At(t, n).parts) part = back.Force(state.q, part);
+      }
+      state.qd = back.PoseJacobian(state.q) * state.qd;
+      state.q = back.Pose(state.q);
+      state.feet.apart = back.Horizontal(state.feet.apart);
+    }
+  }
   return status;
 }
 

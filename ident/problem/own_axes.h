@@ -23,7 +23,7 @@ std::shared_ptr<const std::vector<PendulumRecording>> InOwnAxes(
 // The scene of one of them.
 Scene SceneInOwnAxes(const PendulumRecording& recording, const ModelOptions& options);
 
-// What `roll` does to the scene as a model sees it, seen in the axes of the file. num_frames: of
+// A rollout by `roll` of the scene as a model sees it, seen in the axes of the file. num_frames: of
 // the path. trace may be null.
 RolloutStatus RollInOwnAxes(const PendulumRecording& recording, const ModelOptions& options,
                             const std::function<RolloutStatus(const Scene&)>& roll, int num_frames,

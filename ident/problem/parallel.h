@@ -1,10 +1,8 @@
 // ident: independent jobs over a few threads, and what they spend.
 //
-// Which thread does which job makes no difference to a
-// result: every job writes to its own place.
-//
-// What a job or its progress throws (a user who interrupts, no memory) ends the jobs that have not
-// begun and is thrown again by the thread that asked for them: out of another one it would end the
+// Every job writes to its own place, so that threads make no difference to a result. An exception
+// of a job or of its progress (a user who interrupts, no memory) ends the jobs that have not begun
+// and is thrown again by the thread that asked for them: out of another one it would end the
 // program.
 #pragma once
 
@@ -16,6 +14,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace pushid {
@@ -54,18 +53,21 @@ inline void ParallelFor(int total, int num_threads, const std::function<void(int
   if (thrown) std::rethrow_exception(thrown);
 }
 
-// What a fit spends, and on what: evaluations of its problem, and time.
-
 // Evaluations of all residual blocks of a problem.
 struct Evaluations {
   int jacobians = 0;  // residuals and their Jacobian
   int costs = 0;      // residuals alone
 };
 
-// Counts evaluations that are about to be made, in any thread.
-void CountEvaluations(const Evaluations& more);
-// The sum over all threads of the process so far.
-Evaluations EvaluationsSoFar();
+// Evaluations that were made, over all threads of the process so far.
+struct EvaluationCount {
+  std::atomic<int> jacobians{0}, costs{0};
+
+  static EvaluationCount& Get() {
+    static EvaluationCount count;
+    return count;
+  }
+};
 
 struct Work {
   std::string purpose;  // "start", "horizons", "weights", ...
@@ -78,13 +80,24 @@ struct Work {
 class WorkLog {
  public:
   // Adds what was spent since the last call, or since construction, to a purpose.
-  void Add(const std::string& purpose);
+  void Add(const std::string& purpose) {
+    auto part = std::find_if(parts_.begin(), parts_.end(),
+                             [&](const Work& w) { return w.purpose == purpose; });
+    if (part == parts_.end()) part = parts_.insert(part, {purpose, {}, 0.0});
+    const Work from = std::exchange(from_, Here());
+    part->evaluations.jacobians += from_.evaluations.jacobians - from.evaluations.jacobians;
+    part->evaluations.costs += from_.evaluations.costs - from.evaluations.costs;
+    part->seconds += from_.seconds - from.seconds;
+  }
   const std::vector<Work>& parts() const { return parts_; }  // in order of their first mention
 
  private:
+  static Work Here() {
+    const EvaluationCount& count = EvaluationCount::Get();
+    return {"", {count.jacobians, count.costs}, Now()};
+  }
   std::vector<Work> parts_;
-  Evaluations from_ = EvaluationsSoFar();
-  double since_ = Now();
+  Work from_ = Here();
 };
 
 }  // namespace pushid

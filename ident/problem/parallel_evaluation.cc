@@ -55,13 +55,12 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
       held = jacobians[b] == nullptr || !jacobians_[b].empty();
     }
     if (!held) return cost_->Evaluate(blocks, residuals, jacobians);
-    if (!ok_) return false;
     std::copy(residuals_.begin(), residuals_.end(), residuals);
     for (size_t b = 0; jacobians != nullptr && b < blocks_.size(); ++b) {
       if (jacobians[b] == nullptr) continue;
       std::copy(jacobians_[b].begin(), jacobians_[b].end(), jacobians[b]);
     }
-    return true;
+    return ok_;
   }
 
  private:
@@ -72,8 +71,7 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
       point_.insert(point_.end(), blocks_[b], blocks_[b] + parameter_block_sizes()[b]);
     }
   }
-  template <typename Blocks>
-  bool Holds(Blocks blocks, bool with_jacobians) const {
+  bool Holds(double const* const* blocks, bool with_jacobians) const {
     if (point_.empty() || (with_jacobians && !has_jacobians_)) return false;
     auto at = point_.begin();
     for (size_t b = 0; b < blocks_.size(); at += parameter_block_sizes()[b++]) {
@@ -98,29 +96,6 @@ std::unique_ptr<ceres::CostFunction> ParallelEvaluation::Wrap(
   return prepared;
 }
 
-// One cost function, or rollouts side by side.
-struct ParallelEvaluation::Task {
-  std::vector<Prepared*> members;
-  const LaneGroup* lanes;  // null: one cost function
-
-  void Prepare(LaneSums wanted, const ceres::Problem& problem) {
-    const bool with_jacobians = wanted != LaneSums::kSquares;
-    if (lanes == nullptr) return members[0]->Prepare(with_jacobians, problem);
-    std::vector<double const* const*> blocks;
-    blocks.reserve(members.size());
-    bool there = true;
-    for (const Prepared* member : members) {
-      blocks.push_back(member->blocks());
-      there = there && member->IsPrepared(with_jacobians);
-    }
-    if (there) return;
-    std::vector<RolloutSums> sums = lanes->Evaluate(blocks, wanted);
-    for (size_t i = 0; i < members.size(); ++i) {
-      members[i]->Prepare(std::move(sums[i]), with_jacobians);
-    }
-  }
-};
-
 ParallelEvaluation::ParallelEvaluation(int num_threads) : num_threads_(num_threads) {}
 ParallelEvaluation::~ParallelEvaluation() = default;
 
@@ -134,12 +109,10 @@ void ParallelEvaluation::SetTasks() {
     }
   }
   for (size_t g = 0; !in_lanes.empty() && g < side_by_side_->size(); ++g) {
-    const LaneGroup& lanes = (*side_by_side_)[g].lanes;
-    Task task{{}, &lanes};
-    for (const RolloutProblem* problem : lanes.problems()) {
+    Task& task = tasks_.emplace_back(Task{{}, &(*side_by_side_)[g].lanes});
+    for (const RolloutProblem* problem : task.lanes->problems()) {
       task.members.push_back(in_lanes.at(problem));
     }
-    tasks_.push_back(std::move(task));
   }
 }
 
@@ -153,11 +126,24 @@ const RolloutSums* ParallelEvaluation::SumsOf(const ceres::CostFunction* cost) {
 }
 
 void ParallelEvaluation::PrepareForEvaluation(bool evaluate_jacobians, bool) {
-  const LaneSums wanted = evaluate_jacobians ? LaneSums::kPlain : LaneSums::kSquares;
-  CountEvaluations({evaluate_jacobians, !evaluate_jacobians});
+  ++(evaluate_jacobians ? EvaluationCount::Get().jacobians : EvaluationCount::Get().costs);
   if (tasks_.empty()) SetTasks();
-  ParallelFor(static_cast<int>(tasks_.size()), num_threads_,
-              [&](int i) { tasks_[i].Prepare(wanted, *problem_); });
+  ParallelFor(static_cast<int>(tasks_.size()), num_threads_, [&](int i) {
+    const auto& [members, lanes] = tasks_[i];
+    if (lanes == nullptr) return members[0]->Prepare(evaluate_jacobians, *problem_);
+    std::vector<double const* const*> blocks;
+    bool there = true;
+    for (const Prepared* member : members) {
+      blocks.push_back(member->blocks());
+      there = there && member->IsPrepared(evaluate_jacobians);
+    }
+    if (there) return;
+    std::vector<RolloutSums> sums =
+        lanes->Evaluate(blocks, evaluate_jacobians ? LaneSums::kPlain : LaneSums::kSquares);
+    for (size_t m = 0; m < members.size(); ++m) {
+      members[m]->Prepare(std::move(sums[m]), evaluate_jacobians);
+    }
+  });
 }
 
 }  // namespace pushid

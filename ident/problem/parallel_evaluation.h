@@ -23,18 +23,18 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
   explicit ParallelEvaluation(int num_threads);
   ~ParallelEvaluation() override;
 
-  // What to add to the problem in place of `cost`, which acts on `blocks`.
+  // To be added to the problem in place of `cost`, which acts on `blocks`.
   std::unique_ptr<ceres::CostFunction> Wrap(std::unique_ptr<ceres::CostFunction> cost,
                                             const std::vector<double*>& blocks);
   // The constant blocks of this problem need no derivatives.
   void set_problem(const ceres::Problem* problem) { problem_ = problem; }
-  // The groups of the rollouts that are wrapped.
+  // The groups of the wrapped rollouts.
   void set_side_by_side(std::shared_ptr<const std::vector<SideBySide>> groups) {
     side_by_side_ = std::move(groups);
   }
 
   // The rollout in lanes that Wrap was given, and its sums at the last preparation; null for other
-  // cost functions. summed_cost.h adds sums up without rows between.
+  // cost functions. structured_secants.h adds sums up without rows between.
   static const RolloutProblem* ProblemOf(const ceres::CostFunction* cost);
   static const RolloutSums* SumsOf(const ceres::CostFunction* cost);
 
@@ -42,7 +42,11 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
 
  private:
   class Prepared;
-  struct Task;
+  // One cost function, or rollouts side by side (lanes; else null).
+  struct Task {
+    std::vector<Prepared*> members;
+    const LaneGroup* lanes;
+  };
   void SetTasks();
 
   int num_threads_;

@@ -87,14 +87,8 @@ bool EvaluateOwnRows(const ceres::CostFunction& cost, const std::vector<const do
   return true;
 }
 
-int NumColumns(const BuiltProblem& built) {
-  int columns = 0;
-  for (double* block : built.parameter_blocks) columns += built.problem->ParameterBlockSize(block);
-  return columns;
-}
-
 std::vector<RowBlock> RowBlocksOf(const BuiltProblem& built, bool robust) {
-  CountEvaluations({1, 0});
+  ++EvaluationCount::Get().jacobians;
   std::map<const double*, Index> first_column;
   Index next = 0;
   for (double* block : built.parameter_blocks) {
@@ -147,7 +141,9 @@ Eigen::VectorXd ResidualRows::Gradient(const std::vector<int>& rows) const {
 }
 
 ResidualRows EvaluateRows(const BuiltProblem& built, bool robust) {
-  return Stack(RowBlocksOf(built, robust), NumColumns(built), robust);
+  Index columns = 0;
+  for (double* block : built.parameter_blocks) columns += built.problem->ParameterBlockSize(block);
+  return Stack(RowBlocksOf(built, robust), columns, robust);
 }
 
 ResidualRows EvaluateRows(const FitProblem& problem, FitPoint point, bool robust) {
@@ -191,11 +187,6 @@ namespace {
 
 constexpr double kStep = 1e-5;  // of a column's unit
 
-ResidualSigmas WithoutRobustLoss(ResidualSigmas sigmas) {
-  sigmas.robust = 0.0;
-  return sigmas;
-}
-
 // By rollout: empty where it leaves the domain, and without a problem.
 ResidualsByRecording ResidualsOf(const std::vector<RolloutAt>& rollouts) {
   std::vector<RolloutSums> sums = SumUp(PutSideBySide(rollouts), rollouts, LaneSums::kNone);
@@ -214,18 +205,6 @@ Eigen::Map<const Eigen::VectorXd> Mapped(const std::vector<double>& values) {
   return {values.data(), static_cast<Index>(values.size())};
 }
 
-// With d(model - (1 + eta) measured) = d(model) - measured, the column holds the noise of what was
-// measured, which the residual holds as well: their product is no longer zero on average. The same
-// model, with d(model / (1 + eta) - measured) = d(model) - model: less by the residual.
-void LeaveOutNoiseOfRates(const Eigen::VectorXd& here, Index motion,
-                          Eigen::Ref<Eigen::VectorXd> column) {
-  for (Index k = 0; k < motion; ++k) {
-    const Index channel = k % kFrameResiduals;
-    const bool rate = channel == 3 || channel == 4 || channel >= 7;
-    if (rate) column[k] -= here[k];
-  }
-}
-
 // Raw residuals of a recording, and their derivatives.
 struct RawRows {
   Eigen::VectorXd residuals;   // empty: the rollout fails
@@ -233,22 +212,35 @@ struct RawRows {
   Eigen::MatrixXd by_column;
 };
 
+// A problem as a point, its model and its parameters have it.
+struct Seen {
+  ModelOptions model;
+  ParameterMap map;
+  FitPoint point;
+};
+
+// A recording's rollout without the robust loss, and as it weighs by itself.
+RolloutAt RawRollout(const FitProblem& problem, const PendulumRecording& recording, int index,
+                     Seen* seen) {
+  ResidualSigmas sigmas = problem.options().sigmas;
+  sigmas.robust = 0.0;
+  return {MakeRolloutProblem(recording, seen->model, seen->map, sigmas, 1.0, 0),
+          problem.RecordingBlocks(&seen->point, index)};
+}
+
 class RowsOfRecordings {
  public:
-  // What it is made of must outlive it.
+  // The arguments must outlive it.
   RowsOfRecordings(const FitProblem& problem, const FitPoint& point,
                    const std::vector<Assumption>& assumptions)
       : problem_(problem),
         here_{problem.options().model, problem.map(), point},
         unit_(Units(FittedColumns(problem, point))) {
     Index next = 0;
-    const auto add = [this, &next](const std::vector<double>& block) {
+    FitPoint::ForBlocks(here_.point, [this, &next](const std::vector<double>& block) {
       first_[block.data()] = next;
       next += static_cast<Index>(block.size());
-    };
-    add(here_.point.shared);
-    for (const auto& [unit, block] : here_.point.unit) add(block);
-    for (const auto& [recording, block] : here_.point.velocity) add(block);
+    });
     const std::vector<double> flat = point.Flat();
     for (size_t c = 0; c < flat.size(); ++c) {
       std::vector<double> moved = flat;
@@ -272,7 +264,7 @@ class RowsOfRecordings {
 
   // From any thread.
   RawRows Of(int index) {
-    const RolloutAt here = Rollout(&here_, problem_.recordings()[index], index);
+    const RolloutAt here = RawRollout(problem_, problem_.recordings()[index], index, &here_);
     RawRows rows;
     if (!HasLanes(*here.problem)) {
       rows = BySensitivities(here);
@@ -283,24 +275,12 @@ class RowsOfRecordings {
   }
 
  private:
-  // What a fit sees of a recording besides itself.
-  struct Seen {
-    ModelOptions model;
-    ParameterMap map;
-    FitPoint point;
-  };
-  // What is seen one step along a column. assumption: null for an estimate.
+  // One step along it. assumption: null for an estimate.
   struct Column {
     Seen seen;
     double step;
     const Assumption* assumption;
   };
-
-  RolloutAt Rollout(Seen* seen, const PendulumRecording& recording, int index) const {
-    return {MakeRolloutProblem(recording, seen->model, seen->map,
-                               WithoutRobustLoss(problem_.options().sigmas), 1.0, 0),
-            problem_.RecordingBlocks(&seen->point, index)};
-  }
 
   // Columns of the fit, each with its place among those of the recording's blocks; none on bounds.
   std::vector<std::pair<Index, Index>> OwnColumns(const RolloutAt& here) const {
@@ -335,7 +315,7 @@ class RowsOfRecordings {
     return rows;
   }
 
-  // What *rows does not hold yet. A column whose changed rollout fails is left out.
+  // Columns that *rows does not hold yet. One whose changed rollout fails is left out.
   void AddDifferences(const RolloutAt& here, int index, RawRows* rows) {
     const bool none = rows->residuals.size() == 0;
     std::vector<RolloutAt> rollouts;
@@ -355,7 +335,7 @@ class RowsOfRecordings {
         assumption->of_recording(assumption->step, &changed.emplace_back(*seen));
         seen = &changed.back();
       }
-      rollouts.push_back(Rollout(&columns_[c].seen, *seen, index));
+      rollouts.push_back(RawRollout(problem_, *seen, index, &columns_[c].seen));
     }
     ResidualsByRecording there = ResidualsOf(rollouts);
     if (none) {
@@ -380,9 +360,14 @@ class RowsOfRecordings {
   // The column of an assumption, of which the estimates' columns are known.
   void Correct(const Assumption& assumption, int index, const RawRows& rows,
                Eigen::Ref<Eigen::VectorXd> column) const {
-    if (assumption.of_rates) {
-      LeaveOutNoiseOfRates(rows.residuals, static_cast<Index>(problem_.NumMotionRows(index)),
-                           column);
+    // With d(model - (1 + eta) measured) = d(model) - measured, the column holds the noise of what
+    // was measured, which the residual holds as well: their product is no longer zero on average.
+    // Less by the residual it is that of d(model / (1 + eta) - measured) = d(model) - model.
+    const Index motion = static_cast<Index>(problem_.NumMotionRows(index));
+    for (Index k = 0; assumption.of_rates && k < motion; ++k) {
+      const Index channel = k % kFrameResiduals;
+      const bool rate = channel == 3 || channel == 4 || channel >= 7;
+      if (rate) column[k] -= rows.residuals[k];
     }
     // As if the estimates had stayed where they are.
     for (const auto& [of, shift] : assumption.along) {
@@ -407,110 +392,88 @@ struct PersonSums {
   std::vector<Eigen::VectorXd> scores;  // J'r, by part
 };
 
-// Raw rows become those of the cost, and add up.
-class Condenser {
- public:
-  Condenser(const FitProblem& problem, const RawRows& rows, size_t num_parts, int recording)
-      : columns_(static_cast<int>(rows.columns.size())),
-        weight_(problem.Weight(recording, 0)),
-        loss_(problem.options().sigmas.OfFrames()),
-        rows_(rows),
-        frame_(RowMajorMatrix::Zero(kFrameResiduals, NormalEquations::PaddedSize(columns_))) {
-    const NormalEquations none(columns_);
-    people_.resize(static_cast<size_t>(problem.recordings()[recording].num_people()),
-                   {none, none, std::vector(num_parts, none),
-                    std::vector<Eigen::VectorXd>(num_parts, Eigen::VectorXd::Zero(columns_))});
-  }
-
-  // The next rows, times how much of the frame was seen: with c = sqrt(1 + |r|^2 / d^2), residual
-  // and Jacobian times weight / sqrt(c); the loss's own Hessian has 1 / c of that along r
-  // (frame_residual.h).
-  void AddFrame(Index count, double seen, size_t part, int person) {
-    PersonSums& to = people_[person];
-    const auto r = rows_.residuals.segment(next_, count);
-    const double squared = r.squaredNorm();
-    const double whole = seen > 0.0 ? squared / (seen * seen) : 0.0;  // as if all of it counted
-    const double c = loss_ > 0.0 ? std::sqrt(1.0 + whole / (loss_ * loss_)) : 1.0;
-    const double scale = weight_ / std::sqrt(c);
-    auto by_column = frame_.topLeftCorner(count, columns_);
-    by_column = scale * rows_.by_column.middleRows(next_, count);
-    residuals_ = scale * r;
-    to.plain.Add(static_cast<int>(count), frame_.data(), residuals_.data());
-    if (squared > 0.0) {
-      along_.noalias() = r.transpose() * by_column;
-      to.scores[part] += scale * along_.transpose();
-      along_ *= (1.0 / c - 1.0) / squared;
-      for (Index i = 0; i < count; ++i) by_column.row(i) += r[i] * along_;
-    }
-    to.robust_parts[part].Add(static_cast<int>(count), frame_.data(), residuals_.data());
-    next_ += count;
-  }
-
-  std::vector<PersonSums>& people() { return people_; }
-
- private:
-  int columns_;
-  double weight_, loss_;
-  const RawRows& rows_;
-  Index next_ = 0;
-  RowMajorMatrix frame_;  // J, padded
-  Eigen::VectorXd residuals_;
-  Eigen::RowVectorXd along_;
-  std::vector<PersonSums> people_;
+// A recording's rows, one person after the other, and its parts.
+struct Condensed {
+  RowBlock block;
+  std::vector<DataPart> parts;
 };
 
-std::vector<PersonSums> Condense(const FitProblem& problem, const RawRows& rows,
-                                 const std::vector<int>& horizons, int recording) {
+// Raw rows become those of the cost, and add up: with c = sqrt(1 + |r|^2 / d^2), residual and
+// Jacobian of a frame times weight / sqrt(c); the loss's own Hessian has 1 / c of that along r
+// (frame_residual.h).
+Condensed Condense(const FitProblem& problem, const RawRows& rows, Index estimates,
+                   const std::vector<int>& horizons, int recording) {
   const PendulumRecording& r = problem.recordings()[recording];
-  Condenser condenser(problem, rows, horizons.size() + 1, recording);
-  const int begin = PushFrame(r);
-  const auto part_of = [&](int frame) {
-    return static_cast<size_t>(std::lower_bound(horizons.begin(), horizons.end(), frame - begin) -
-                               horizons.begin());
+  const int columns = static_cast<int>(rows.columns.size()), begin = PushFrame(r);
+  const double weight = problem.Weight(recording, 0), loss = problem.options().sigmas.OfFrames();
+  const NormalEquations none(columns);
+  const size_t num_parts = horizons.size() + 1;
+  std::vector<PersonSums> people(
+      static_cast<size_t>(r.num_people()),
+      {none, none, std::vector(num_parts, none),
+       std::vector<Eigen::VectorXd>(num_parts, Eigen::VectorXd::Zero(columns))});
+  RowMajorMatrix frame =
+      RowMajorMatrix::Zero(kFrameResiduals, NormalEquations::PaddedSize(columns));
+  Eigen::VectorXd residuals;
+  Eigen::RowVectorXd along;
+  Index next = 0;
+  // The next rows, of frame t; seen: how much of it was.
+  const auto add = [&](Index count, double seen, int t, PersonSums* to) {
+    const size_t part = static_cast<size_t>(
+        std::lower_bound(horizons.begin(), horizons.end(), t - begin) - horizons.begin());
+    const auto raw = rows.residuals.segment(next, count);
+    const double squared = raw.squaredNorm();
+    const double whole = seen > 0.0 ? squared / (seen * seen) : 0.0;  // as if all of it counted
+    const double c = loss > 0.0 ? std::sqrt(1.0 + whole / (loss * loss)) : 1.0;
+    const double scale = weight / std::sqrt(c);
+    auto by_column = frame.topLeftCorner(count, columns);
+    by_column = scale * rows.by_column.middleRows(next, count);
+    residuals = scale * raw;
+    to->plain.Add(static_cast<int>(count), frame.data(), residuals.data());
+    if (squared > 0.0) {
+      along.noalias() = raw.transpose() * by_column;
+      to->scores[part] += scale * along.transpose();
+      along *= (1.0 / c - 1.0) / squared;
+      for (Index i = 0; i < count; ++i) by_column.row(i) += raw[i] * along;
+    }
+    to->robust_parts[part].Add(static_cast<int>(count), frame.data(), residuals.data());
+    next += count;
   };
   for (int t = 1; t < r.num_frames(); ++t) {
-    for (int n = 0; n < r.num_people(); ++n) {
-      condenser.AddFrame(kFrameResiduals, r.Weight(n, t), part_of(t), n);
-    }
+    for (int n = 0; n < r.num_people(); ++n) add(kFrameResiduals, r.Weight(n, t), t, &people[n]);
   }
   for (int t = 0; t + 1 < r.num_frames(); ++t) {
     for (int n = 0; n < r.num_people(); ++n) {
-      if (!r.HasPlates(n)) continue;
-      condenser.AddFrame(kPlateResiduals, r.plates[n][t].weight, part_of(t), n);
+      if (r.HasPlates(n)) add(kPlateResiduals, r.plates[n][t].weight, t, &people[n]);
     }
   }
-  for (PersonSums& person : condenser.people()) {
-    for (const NormalEquations& part : person.robust_parts) person.robust.Add(part);
-  }
-  return std::move(condenser.people());
-}
-
-RowBlock RowsOfPeople(int recording, const RawRows& raw, const std::vector<PersonSums>& people) {
-  RowBlock block{recording, raw.columns, {}, {}, static_cast<int>(raw.residuals.size())};
-  const Index count = static_cast<Index>(raw.columns.size());
-  for (const PersonSums& person : people) {
-    const RowMajorMatrix plain = person.plain.Factor();
-    block.people.push_back(
-        {plain.leftCols(count), plain.col(count), person.robust.Factor().leftCols(count)});
-    block.person_of_row.insert(block.person_of_row.end(), static_cast<size_t>(count + 1),
-                               static_cast<int>(&person - people.data()));
-  }
-  return block;
-}
-
-DataPart PartOf(const PersonSums& person, size_t part, const std::vector<Index>& columns,
-                Index estimates) {
-  const auto beyond = std::lower_bound(columns.begin(), columns.end(), estimates);
-  const std::vector<Index> own(columns.begin(), beyond);
+  const auto beyond = std::lower_bound(rows.columns.begin(), rows.columns.end(), estimates);
+  const std::vector<Index> own(rows.columns.begin(), beyond);
   const Index count = static_cast<Index>(own.size());
-  const RowMajorMatrix gram = person.robust_parts[part].information().topLeftCorner(count, count);
-  DataPart of;
-  of.part = static_cast<int>(part);
-  of.score = Eigen::VectorXd::Zero(estimates);
-  of.score(own) = person.scores[part].head(count);
-  of.information = Eigen::MatrixXd::Zero(estimates, estimates);
-  of.information(own, own) = Eigen::MatrixXd(gram.selfadjointView<Eigen::Upper>());
-  return of;
+  Condensed condensed{{recording, rows.columns, {}, {}, static_cast<int>(rows.residuals.size())},
+                      {}};
+  for (PersonSums& person : people) {
+    const int n = static_cast<int>(&person - people.data());
+    for (const NormalEquations& part : person.robust_parts) person.robust.Add(part);
+    const RowMajorMatrix plain = person.plain.Factor();
+    condensed.block.people.push_back(
+        {plain.leftCols(columns), plain.col(columns), person.robust.Factor().leftCols(columns)});
+    condensed.block.person_of_row.insert(condensed.block.person_of_row.end(),
+                                         static_cast<size_t>(columns + 1), n);
+    for (size_t part = 0; part < num_parts; ++part) {
+      const RowMajorMatrix gram =
+          person.robust_parts[part].information().topLeftCorner(count, count);
+      DataPart& of = condensed.parts.emplace_back();
+      of.recording = recording;
+      of.person = n;
+      of.part = static_cast<int>(part);
+      of.score = Eigen::VectorXd::Zero(estimates);
+      of.score(own) = person.scores[part].head(count);
+      of.information = Eigen::MatrixXd::Zero(estimates, estimates);
+      of.information(own, own) = Eigen::MatrixXd(gram.selfadjointView<Eigen::Upper>());
+    }
+  }
+  return condensed;
 }
 
 }  // namespace
@@ -527,15 +490,9 @@ ResidualRows EvaluateRows(const FitProblem& problem, const FitPoint& point,
     if (problem.Count(i) == 0) return;
     const RawRows raw = of.Of(i);
     if (raw.residuals.size() == 0) return;
-    const std::vector<PersonSums> people = Condense(problem, raw, horizons, i);
-    blocks[i] = RowsOfPeople(i, raw, people);
-    for (size_t n = 0; n < people.size(); ++n) {
-      for (size_t part = 0; part < people[n].scores.size(); ++part) {
-        parts[i].push_back(PartOf(people[n], part, raw.columns, estimates));
-        parts[i].back().recording = i;
-        parts[i].back().person = static_cast<int>(n);
-      }
-    }
+    Condensed condensed = Condense(problem, raw, estimates, horizons, i);
+    blocks[i] = std::move(condensed.block);
+    parts[i] = std::move(condensed.parts);
   });
   for (int i = 0; i < recordings; ++i) {
     if (problem.Count(i) > 0 && blocks[i].num_rows == 0) return {};
@@ -561,14 +518,13 @@ ResidualRows EvaluateRows(const FitProblem& problem, const FitPoint& point,
   return rows;
 }
 
-ResidualsByRecording RawResiduals(const FitProblem& problem, FitPoint point, bool counted_only) {
+ResidualsByRecording RawResiduals(const FitProblem& problem, const FitPoint& point,
+                                  bool counted_only) {
+  Seen here{problem.options().model, problem.map(), point};
   std::vector<RolloutAt> rollouts(problem.recordings().size());
   for (int i = 0; i < static_cast<int>(rollouts.size()); ++i) {
     if (counted_only && problem.Count(i) == 0) continue;
-    rollouts[i] = {
-        MakeRolloutProblem(problem.recordings()[i], problem.options().model, problem.map(),
-                           WithoutRobustLoss(problem.options().sigmas), 1.0, 0),
-        problem.RecordingBlocks(&point, i)};
+    rollouts[i] = RawRollout(problem, problem.recordings()[i], i, &here);
   }
   return ResidualsOf(rollouts);
 }
@@ -583,8 +539,7 @@ std::vector<FittedColumn> FittedColumns(const FitProblem& problem, const FitPoin
     c.width = spec.prior ? spec.prior->sigma : spec.scale;
     c.fitted = point.shared[i];
     c.natural = ToNatural(spec.transform, c.fitted);
-    const double lower = ToFitted(spec.transform, spec.lower);
-    const double upper = ToFitted(spec.transform, spec.upper);
+    const auto [lower, upper] = problem.Bounds(i);
     const double margin = 1e-6 * (upper - lower);
     c.at_bound = c.fitted < lower + margin || c.fitted > upper - margin;
     columns.push_back(c);

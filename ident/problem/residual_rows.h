@@ -41,8 +41,8 @@ struct ResidualRows {
   // The Jacobian with the robust loss's own Hessian in its J'J (frame_residual.h), rows of
   // recordings only, zeros elsewhere; empty where it was not asked for.
   Eigen::MatrixXd robust_jacobian;
-  // What J'J leaves out of the Hessian: the sum over rows of r times its second derivatives. Empty
-  // until AddCurvature.
+  // The Hessian less J'J: the sum over rows of r times its second derivatives. Empty until
+  // AddCurvature.
   Eigen::MatrixXd curvature;
   std::vector<DataPart> parts;  // with horizons
 
@@ -78,7 +78,7 @@ struct Assumption {
   std::string unit;    // of eta; empty: a share, or a logarithm of a factor
   double sigma = 0.0;  // standard deviation that is stated of eta; 0: none, it is only tested
   double step = 0.0;   // of differences
-  // What it changes: every recording, or the options of the fit. Null: it leaves them.
+  // Its changes to every recording, or to the options of the fit. Null: none.
   std::function<void(double eta, PendulumRecording*)> of_recording;
   std::function<void(double eta, FitOptions*)> of_options = nullptr;
   // Estimates that go with it to the first order, and how far each shared one does at `step`, on
@@ -109,12 +109,10 @@ void AddCurvature(const BuiltProblem& built, const Eigen::VectorXd& steps, bool 
 // person; then those of platforms (residuals/plate_residual.h). Empty where a rollout leaves
 // the domain, and of recordings that do not count if only the others are wanted.
 using ResidualsByRecording = std::vector<std::vector<double>>;
-ResidualsByRecording RawResiduals(const FitProblem& problem, FitPoint point,
+ResidualsByRecording RawResiduals(const FitProblem& problem, const FitPoint& point,
                                   bool counted_only = false);
 
-// The fitted numbers one by one.
-
-// What is known of each fitted number besides its estimate.
+// A fitted number, besides its estimate.
 struct FittedColumn {
   std::string name, unit;
   Transform transform = Transform::kIdentity;

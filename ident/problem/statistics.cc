@@ -6,45 +6,26 @@
 #include <unsupported/Eigen/SpecialFunctions>
 
 namespace pushid {
-namespace {
-
-std::vector<double> Centred(std::vector<double> series) {
-  double mean = 0.0;
-  for (double value : series) mean += value / static_cast<double>(series.size());
-  for (double& value : series) value -= mean;
-  return series;
-}
-
-Eigen::Map<const Eigen::VectorXd> AsVector(const std::vector<double>& series) {
-  return {series.data(), static_cast<Eigen::Index>(series.size())};
-}
-
-double Power(const std::vector<double>& series) { return AsVector(series).squaredNorm(); }
-
-// sum over t of a_t b_{t-lag}, of as many.
-double Lagged(const std::vector<double>& a, const std::vector<double>& b, int lag) {
-  const Eigen::Index rest = std::max<Eigen::Index>(0, AsVector(a).size() - lag);
-  return AsVector(a).tail(rest).dot(AsVector(b).head(rest));
-}
-
-}  // namespace
-
-std::vector<double> Autocorrelation(const std::vector<double>& series, int num_lags) {
-  const std::vector<double> e = Centred(series);
-  const double power = Power(e);
-  std::vector<double> r(num_lags, 0.0);
+std::vector<double> CrossCorrelation(const std::vector<double>& series,
+                                     const std::vector<double>& input, int num_lags) {
+  const auto centred = [](const std::vector<double>& values) -> Eigen::VectorXd {
+    const auto all = Eigen::VectorXd::Map(values.data(), static_cast<Eigen::Index>(values.size()));
+    return all.array() - MeanOf(values).mean;
+  };
+  const Eigen::VectorXd e = centred(series), u = centred(input);
+  const double power = std::sqrt(e.squaredNorm() * u.squaredNorm());
+  std::vector<double> r(num_lags + 1, 0.0);
   if (power == 0.0) return r;
-  for (int k = 1; k <= num_lags; ++k) r[k - 1] = Lagged(e, e, k) / power;
+  for (int k = 0; k <= num_lags; ++k) {
+    const Eigen::Index rest = std::max<Eigen::Index>(0, e.size() - k);
+    r[k] = e.tail(rest).dot(u.head(rest)) / power;
+  }
   return r;
 }
 
-std::vector<double> CrossCorrelation(const std::vector<double>& series,
-                                     const std::vector<double>& input, int num_lags) {
-  const std::vector<double> e = Centred(series), u = Centred(input);
-  const double power = std::sqrt(Power(e) * Power(u));
-  std::vector<double> r(num_lags + 1, 0.0);
-  if (power == 0.0) return r;
-  for (int k = 0; k <= num_lags; ++k) r[k] = Lagged(e, u, k) / power;
+std::vector<double> Autocorrelation(const std::vector<double>& series, int num_lags) {
+  std::vector<double> r = CrossCorrelation(series, series, num_lags);
+  r.erase(r.begin());
   return r;
 }
 

@@ -1,5 +1,4 @@
-// ident: statistics of residuals and errors: correlations over time, means with their errors,
-// medians, quantiles and scores of draws, and tails of chi-squared and Student's t.
+// ident: statistics of residuals, errors and draws.
 #pragma once
 
 #include <algorithm>

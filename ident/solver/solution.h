@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "ident/problem/fit_point.h"
-#include "ident/solver/structured_secants.h"
 
 namespace pushid {
 
@@ -55,6 +54,7 @@ struct SolveStart {
 struct Solution {
   SolveStart start;
   double seconds = 0.0;
+  bool settled = false;  // the data's weights within 1 %, or the likelihood, from round to round
 
   bool ok() const { return start.usable; }
 };

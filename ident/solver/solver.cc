@@ -11,18 +11,24 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <tuple>
 
 #include "datasets/files/number_text.h"
 #include "ident/problem/parallel.h"
 #include "ident/problem/residual_rows.h"
-#include "ident/solver/summed_cost.h"
+#include "ident/solver/structured_secants.h"
 #include "models/decompositions.h"
 #include "models/parameters.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 
 namespace pushid {
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+
 namespace {
 
+// Function tolerance where a network is fitted: a smaller one changes nothing that can be seen.
+constexpr double kNetworkTolerance = 1e-6;
 // Stages before the last need not be exact: function tolerance, and how much larger than the
 // last's.
 constexpr double kOnTheWay = 1e-4, kLessExact = 3.0;
@@ -44,14 +50,11 @@ class ProgressCallback : public ceres::IterationCallback {
   std::string phase_;
 };
 
-std::string HorizonName(int horizon) {
-  return horizon == 0 ? "all frames" : std::to_string(horizon) + " frames";
-}
-
-ceres::LinearSolverType LinearSolverFor(int columns, bool has_network) {
-  if (columns <= kDenseColumns) return ceres::DENSE_QR;
-  return has_network ? ceres::DENSE_NORMAL_CHOLESKY : ceres::SPARSE_NORMAL_CHOLESKY;
-}
+// Where demands begin and contacts close, steps shrink with the trust region until one is within
+// the tolerance, which is no optimum: from such an end a fresh region goes on, without what secants
+// learned, while it brings more than so many tolerances.
+constexpr double kWorthAnother = 50.0;
+constexpr int kMostFresh = 5;
 
 // By secants where there are few columns.
 ceres::Solver::Summary Minimize(FitProblem::Built* built, ceres::Solver::Options options,
@@ -78,18 +81,31 @@ ceres::Solver::Summary Minimize(FitProblem::Built* built, ceres::Solver::Options
   return summary;
 }
 
-// Where demands begin and contacts close, steps shrink with the trust region until one is within
-// the tolerance, which is no optimum: from such an end a fresh region goes on, without what secants
-// learned, while it brings more than so many tolerances.
-constexpr double kWorthAnother = 50.0;
-constexpr int kMostFresh = 5;
+// A stage of a start, from where it stands: what was built there. tolerance: the least.
+FitProblem::Built SolveStageOf(const FitProblem& problem, int horizon, bool hold_network,
+                               double tolerance, const std::string& phase,
+                               const SolveProgress& progress, SolveStart* start) {
+  const FitOptions& options = problem.options();
+  FitProblem::Built built = problem.Build(&start->to, horizon, hold_network, options.num_threads);
+  ceres::Solver::Options solver = SolverOptions(options, *built.problem);
+  solver.function_tolerance = std::max(tolerance, solver.function_tolerance);
+  ProgressCallback callback(progress, phase);
+  if (progress) solver.callbacks.push_back(&callback);
+  start->Add(SolveBuilt(&built, solver, horizon, &start->message, StructuredSecants(false)));
+  const SolveStage& stage = start->stages.back();
+  if (horizon != 0) return built;
+  start->failed = problem.Failures(start->to, 0);
+  start->usable = stage.converged || stage.final_cost < stage.initial_cost;
+  return built;
+}
 
 }  // namespace
 
 ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Problem& problem) {
   ceres::Solver::Options solver;
-  solver.linear_solver_type =
-      LinearSolverFor(problem.NumParameters(), options.model.learned != nullptr);
+  solver.linear_solver_type = problem.NumParameters() <= kDenseColumns ? ceres::DENSE_QR
+                              : options.model.learned != nullptr ? ceres::DENSE_NORMAL_CHOLESKY
+                                                                 : ceres::SPARSE_NORMAL_CHOLESKY;
   solver.dense_linear_algebra_library_type = ceres::EIGEN;
   solver.max_num_iterations = options.max_iterations;
   solver.function_tolerance = options.function_tolerance;
@@ -132,20 +148,6 @@ double CostAt(const FitProblem& problem, FitPoint point) {
   return cost - built.Offset();
 }
 
-// A network learns on top of a physical model that has converged without it, together with it.
-void TrainNetwork(const FitProblem& problem, const SolveProgress& progress, SolveStart* start) {
-  const FitOptions& options = problem.options();
-  FitProblem::Built built = problem.Build(&start->to, 0, false, options.num_threads);
-  ceres::Solver::Options solver = SolverOptions(options, *built.problem);
-  solver.function_tolerance = std::max(kNetworkTolerance, options.function_tolerance);
-  ProgressCallback callback(progress, "network");
-  if (progress) solver.callbacks.push_back(&callback);
-  const SolveStage stage = SolveBuilt(&built, solver, 0, &start->message, StructuredSecants(false));
-  start->Add(stage);
-  start->failed = problem.Failures(start->to, 0);
-  start->usable = start->converged || stage.final_cost < stage.initial_cost;
-}
-
 SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std::string& kind,
                      const SolveProgress& progress) {
   const FitOptions& options = problem.options();
@@ -154,34 +156,26 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
   start.from = from;
   start.notes = MoveOffBounds(problem, &start.from);
   start.to = start.from;
-  std::vector<int> horizons = options.horizons;
-  if (horizons.empty() || horizons.back() != 0) horizons.push_back(0);
-
-  for (size_t i = 0; i < horizons.size(); ++i) {
-    const bool last = i + 1 == horizons.size();
-    size_t left_out_before = std::numeric_limits<size_t>::max();
-    // A recording that could not be rolled out to its end at the stage's start may well be after
-    // it: the last stage is repeated, each time with more of it, until nothing changes.
-    for (int attempt = 0; attempt < (last ? 5 : 1); ++attempt) {
-      FitProblem::Built built = problem.Build(&start.to, horizons[i], true, options.num_threads);
-      ceres::Solver::Options solver = SolverOptions(options, *built.problem);
-      if (!last) {
-        solver.function_tolerance = std::max(kOnTheWay, kLessExact * options.function_tolerance);
-      }
-      ProgressCallback callback(progress, HorizonName(horizons[i]));
-      if (progress) solver.callbacks.push_back(&callback);
-      const SolveStage stage =
-          SolveBuilt(&built, solver, horizons[i], &start.message, StructuredSecants(false));
-      start.Add(stage);
-      if (!last) break;
-      start.failed = problem.Failures(start.to, 0);
-      start.usable = stage.converged || stage.final_cost < stage.initial_cost;
-      const size_t left_out = built.shortened.size() + built.rests_left_out;
-      if (left_out == 0 || left_out >= left_out_before) break;
-      left_out_before = left_out;
-    }
+  for (int horizon : options.horizons) {
+    if (horizon == 0) break;
+    SolveStageOf(problem, horizon, true,
+                 std::max(kOnTheWay, kLessExact * options.function_tolerance),
+                 std::to_string(horizon) + " frames", progress, &start);
   }
-  if (!from.weights.empty()) TrainNetwork(problem, progress, &start);
+  // A recording that could not be rolled out to its end at the stage's start may well be after it:
+  // the last stage is repeated, each time with more of it, until nothing changes.
+  size_t left_out_before = std::numeric_limits<size_t>::max();
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    const FitProblem::Built built =
+        SolveStageOf(problem, 0, true, 0.0, "all frames", progress, &start);
+    const size_t left_out = built.shortened.size() + built.rests_left_out;
+    if (left_out == 0 || left_out >= left_out_before) break;
+    left_out_before = left_out;
+  }
+  // A network learns on top of a physical model that has converged without it, together with it.
+  if (!from.weights.empty()) {
+    SolveStageOf(problem, 0, false, kNetworkTolerance, "network", progress, &start);
+  }
   return start;
 }
 
@@ -189,8 +183,7 @@ std::vector<std::string> MoveOffBounds(const FitProblem& problem, FitPoint* poin
   std::vector<std::string> notes;
   for (size_t i = 0; i < point->shared.size(); ++i) {
     const ParameterSpec& spec = problem.Spec(i);
-    const double lower = ToFitted(spec.transform, spec.lower);
-    const double upper = ToFitted(spec.transform, spec.upper);
+    const auto [lower, upper] = problem.Bounds(i);
     const double size = spec.transform == Transform::kIdentity ? spec.scale : 1.0;
     const double inwards = std::min(kOffBound * size, 0.5 * (upper - lower));
     double& value = point->shared[i];
@@ -250,8 +243,8 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, int num_thread
   const bool network = !from.weights.empty();
   const auto solve = [&] {
     const std::vector<double> at = start.to.Flat();
-    const bool all_inside = start.recordings.AreAt(
-        Eigen::Map<const Eigen::VectorXd>(at.data(), static_cast<Eigen::Index>(at.size())));
+    const bool all_inside =
+        start.recordings.AreAt(VectorXd::Map(at.data(), static_cast<Eigen::Index>(at.size())));
     FitProblem::Built built = problem.Build(&start.to, 0, false, num_threads, all_inside);
     ceres::Solver::Options solver = SolverOptions(problem.options(), *built.problem);
     if (network) solver.function_tolerance = std::max(kNetworkTolerance, solver.function_tolerance);
@@ -278,10 +271,9 @@ constexpr double kSettled = 0.01;   // relative change of a spread
 // Noise starts too low rather than too high: rows end where it has fallen far, and never where it
 // rises. Of what transitions leave, measured velocities err too.
 constexpr double kShareOfNoise = 0.1;
-constexpr double kLowMeasurementError = 3e-4;  // m
 // The likelihood of the noise has two basins: all roughness is force, or most of it errors of
 // measurement.
-constexpr double kMeasurementErrors[] = {kLowMeasurementError, 3e-3};
+constexpr double kMeasurementErrors[] = {3e-4, 3e-3};  // m
 
 constexpr double kRoughRollouts = 1e-3;  // function tolerance
 
@@ -308,44 +300,30 @@ Vector4<double> SpreadOfTransitions(const FitProblem& problem, const FitPoint& p
   return (sum / std::max(1, count)).cwiseSqrt();
 }
 
-bool GivenByUser(const ParameterSpec& spec) {
-  return spec.nominal != AllParameterFacts()[spec.id].nominal;
-}
-
-// Where the user has given no other start; error: of measurement, m.
-void StartNoise(const FitProblem& problem, const FitPoint& point, double error,
-                FitOptions* options) {
-  const Vector4<double> spread = SpreadOfTransitions(problem, point);
-  for (int i = 0; i < 4; ++i) {
-    ParameterSpec& spec = options->table.specs[kSigmaX + i];
-    if (!spec.free || GivenByUser(spec)) continue;
-    spec.nominal = std::clamp(kShareOfNoise * spread[i], 2.0 * spec.lower, 0.5 * spec.upper);
-  }
-  for (Parameter id : {kMeasuredCart, kMeasuredHip}) {
-    ParameterSpec& spec = options->table[id];
-    if (spec.free && !GivenByUser(spec)) spec.nominal = error;
-  }
-}
-
-// The noise's starts, at a point of the other parameters.
-void TakeNoise(const FitProblem& problem, FitPoint* point) {
-  const FitPoint nominal = problem.NominalPoint();
-  for (size_t i = 0; i < point->shared.size(); ++i) {
-    if (IsNoiseParameter(problem.Spec(i).id)) point->shared[i] = nominal.shared[i];
-  }
-}
-
-// With the likelier of the noise's starts, which the point takes.
+// With the noise's starts where the user has given no other, at the likelier of the errors of
+// measurement; the point takes them.
 FitProblem WithNoise(const FitProblem& problem, FitPoint* point) {
+  const Vector4<double> spread = SpreadOfTransitions(problem, *point);
   std::optional<FitProblem> best;
   FitPoint best_point;
   double least = std::numeric_limits<double>::infinity();
   for (double error : kMeasurementErrors) {
     FitOptions options = problem.options();
-    StartNoise(problem, *point, error, &options);
+    const auto start = [&options](Parameter id, double value, bool clamped) {
+      ParameterSpec& spec = options.table[id];
+      if (!spec.free || spec.nominal != AllParameterFacts()[id].nominal) return;
+      spec.nominal = clamped ? std::clamp(value, 2.0 * spec.lower, 0.5 * spec.upper) : value;
+    };
+    for (int i = 0; i < 4; ++i) {
+      start(static_cast<Parameter>(kSigmaX + i), kShareOfNoise * spread[i], true);
+    }
+    for (Parameter id : {kMeasuredCart, kMeasuredHip}) start(id, error, false);
     FitProblem with(problem.recordings(), std::move(options), problem.counts());
     FitPoint at = *point;
-    TakeNoise(with, &at);
+    const FitPoint nominal = with.NominalPoint();
+    for (size_t i = 0; i < at.shared.size(); ++i) {
+      if (IsNoiseParameter(with.Spec(i).id)) at.shared[i] = nominal.shared[i];
+    }
     const double deviance = with.DevianceAt(at).value;
     if (best && !(deviance < least)) continue;
     least = deviance;
@@ -359,7 +337,7 @@ FitProblem WithNoise(const FitProblem& problem, FitPoint* point) {
 // BFGS, and the units' spread anew, in turns. Whether the likelihood stays.
 bool SolveOn(FitProblem* problem, SolveStart* start) {
   for (int round = 0; round < kMostRounds; ++round) {
-    CostWeights weights = problem->weights();
+    FitOptions weights = problem->options();
     const double spread = UpdatePoolingSpread(*problem, start->to, &weights);
     problem->SetWeights(weights);
     const double before = start->cost;
@@ -385,26 +363,26 @@ FitPoint RolloutStart(const FitProblem& problem) {
 
 }  // namespace
 
-LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& progress) {
+Solution SolveByLikelihood(FitProblem* problem, const SolveProgress& progress) {
   const double begin = Now();
-  LikelihoodSolution solved;
+  Solution solution;
   FitPoint from = RolloutStart(*problem);
   FitProblem with_noise = WithNoise(*problem, &from);
   FitOptions own = with_noise.options();
   own.horizons = {0};
   own.max_iterations = kScoringSteps;
   const FitProblem whole(problem->recordings(), own, problem->counts());
-  SolveStart& start = solved.solution.start;
+  SolveStart& start = solution.start;
   start = SolveFrom(whole, from, "rollouts", progress);
   for (int round = 1; round < kScoringRounds; ++round) {
     start.to = SolveFrom(whole, start.to, start.kind, progress).to;
   }
   start.failed.clear();
-  solved.stays = SolveOn(&with_noise, &start);
-  start.usable = std::isfinite(start.cost) && start.failed.empty();
+  solution.settled = SolveOn(&with_noise, &start);
+  start.usable = std::isfinite(start.cost);
   if (start.usable) *problem = std::move(with_noise);
-  solved.solution.seconds = Now() - begin;
-  return solved;
+  solution.seconds = Now() - begin;
+  return solution;
 }
 
 LikelihoodScore ScoreByLikelihood(const FitProblem& problem, const FitPoint& point) {
@@ -414,8 +392,6 @@ LikelihoodScore ScoreByLikelihood(const FitProblem& problem, const FitPoint& poi
 
 namespace {
 
-using Eigen::MatrixXd, Eigen::VectorXd;
-
 // Information below which nothing depends on a number, as a share of the largest.
 constexpr double kNoInformation = 1e-12;
 // How far the logarithm of noise may fall: far.
@@ -424,23 +400,20 @@ constexpr double kNearBound = 1e-3;  // on the fitted scale
 constexpr double kRidge = 1e-9;      // of the information's diagonal: directions may be unknown
 
 // Bounds of every number of a point, in its order; those of units are open.
-struct Bounds {
+struct AllBounds {
   VectorXd lower, upper;
-};
 
-Bounds BoundsOf(const FitProblem& problem, Eigen::Index size) {
-  Bounds bounds{VectorXd::Constant(size, -HUGE_VAL), VectorXd::Constant(size, HUGE_VAL)};
-  for (size_t i = 0; i < problem.map().fitted.size(); ++i) {
-    const ParameterSpec& spec = problem.Spec(i);
-    bounds.lower[i] = ToFitted(spec.transform, spec.lower);
-    bounds.upper[i] = ToFitted(spec.transform, spec.upper);
+  AllBounds(const FitProblem& problem, Eigen::Index size)
+      : lower(VectorXd::Constant(size, -HUGE_VAL)), upper(VectorXd::Constant(size, HUGE_VAL)) {
+    for (size_t i = 0; i < problem.map().fitted.size(); ++i) {
+      std::tie(lower[i], upper[i]) = problem.Bounds(i);
+    }
   }
-  return bounds;
-}
+};
 
 VectorXd FlatOf(const FitPoint& point) {
   const std::vector<double> flat = point.Flat();
-  return Eigen::Map<const VectorXd>(flat.data(), static_cast<Eigen::Index>(flat.size()));
+  return VectorXd::Map(flat.data(), static_cast<Eigen::Index>(flat.size()));
 }
 
 void SetFlat(const VectorXd& flat, FitPoint* point) {
@@ -460,7 +433,7 @@ class WhitenedCost : public ceres::FirstOrderFunction {
         point_(at),
         origin_(FlatOf(at)),
         root_(root),
-        bounds_(BoundsOf(problem, origin_.size())) {
+        bounds_(problem, origin_.size()) {
     problem_.set_fall_of_noise(kAnyFall);
     built_ = problem_.Build(&point_, 0);
     double at_origin = 0.0;
@@ -470,7 +443,7 @@ class WhitenedCost : public ceres::FirstOrderFunction {
   }
 
   double level() const { return level_; }
-  // What a cost of the solver's is above the negative log likelihood.
+  // A cost of the solver's less the negative log likelihood.
   double above() const { return shift_ + built_.Offset(); }
 
   VectorXd At(const double* z) const {
@@ -501,7 +474,7 @@ class WhitenedCost : public ceres::FirstOrderFunction {
   mutable FitPoint point_;  // Ceres' problem looks at it
   VectorXd origin_;
   MatrixXd root_;
-  Bounds bounds_;
+  AllBounds bounds_;
   double level_ = 0.0, shift_ = 0.0;
   mutable FitProblem::Built built_;
 };
@@ -534,7 +507,7 @@ SolveStage SolveByBfgs(const FitProblem& problem, FitPoint* point, std::string* 
   }
   const ResidualRows score = EvaluateRows(built);
   const VectorXd x = FlatOf(*point), gradient = score.jacobian.transpose() * score.residuals;
-  const Bounds bounds = BoundsOf(problem, x.size());
+  const AllBounds bounds(problem, x.size());
   const MatrixXd information = score.jacobian.transpose() * score.jacobian;
   const double nothing = kNoInformation * information.diagonal().maxCoeff();
   std::vector<int> moving;

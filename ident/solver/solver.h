@@ -12,9 +12,6 @@
 
 namespace pushid {
 
-// Function tolerance where a network is fitted: a smaller one changes nothing that can be seen.
-inline constexpr double kNetworkTolerance = 1e-6;
-
 // The solver's settings: those of every fit, refit and reference check.
 ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Problem& problem);
 
@@ -62,37 +59,25 @@ LargeNetworkTrainer& LargeNetworkTraining();
 Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recordings,
                                      const FitOptions& options, const SolveProgress& progress);
 
-// A solve that maximizes a likelihood of single steps (residuals/frame_residual.h).
-//
-// It starts at the optimum of rollouts; the noise starts at the spread of the transitions
-// that it leaves. A few steps of Fisher scoring (residuals/cost_functions/likelihood_residual.h),
-// the problem built anew after every third, come near the optimum; BFGS finds it, in turns with the
-// spread of pooled units.
-
-struct LikelihoodSolution {
-  Solution solution;
-  bool stays = false;  // the likelihood, from round to round
-};
-
-// problem: on return with the start of the noise and the units' spread.
-LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& progress = nullptr);
+// Maximizes a likelihood of single steps (residuals/frame_residual.h), from the optimum of
+// rollouts; the noise starts at the spread of the transitions that it leaves. A few steps of Fisher
+// scoring (residuals/cost_functions/likelihood_residual.h), the problem built anew after every
+// third, come near the optimum; BFGS finds it, in turns with the spread of pooled units. problem:
+// on return with the start of the noise and the units' spread.
+Solution SolveByLikelihood(FitProblem* problem, const SolveProgress& progress = nullptr);
 
 // The likelihood's score at a point of a problem.
 LikelihoodScore ScoreByLikelihood(const FitProblem& problem, const FitPoint& point);
 
-// BFGS on the exact cost of a likelihood, in coordinates that the Fisher information makes
-// round.
+// BFGS on the exact cost of a likelihood, in coordinates that the Fisher information makes round.
 //
 // Fisher scoring by Gauss-Newton comes near an optimum in a few steps, and then creeps: where a
 // model is wrong, as every model of people is, the curvature of its likelihood is not its Fisher
 // information (each step took half of what was left on the 32 recordings of single people). BFGS
 // learns the difference: x = origin + R z with R R' the inverse information at the origin, so that
 // its first step is the scoring's own. Numbers on a bound that the gradient pushes outwards are
-// held there.
-//
-// From *point, whose value is overwritten; where nothing can be evaluated it stays, the cost is
-// infinite, and message says why. Numbers that
-// nothing depends on stay where they are.
+// held there, and those that nothing depends on stay. Where nothing can be evaluated *point stays,
+// the cost is infinite, and message says why.
 SolveStage SolveByBfgs(const FitProblem& problem, FitPoint* point, std::string* message);
 
 }  // namespace pushid

@@ -1,4 +1,5 @@
-// ident: the curvature that J'J leaves out, learned from step to step.
+// ident: a built problem as one cost function, whose rows know the curvature that J'J leaves out,
+// learned from step to step.
 //
 // Gauss-Newton takes J'J for the Hessian H of the cost. Where a model is wrong, as every model of
 // people is, the rest, S = H - J'J, is not small: J'J is up to seven times H for people alone, and
@@ -14,35 +15,17 @@
 // back to J'J alone, with which two more of NIST's sets do not converge from afar.
 #pragma once
 
+#include <ceres/cost_function.h>
+#include <ceres/problem.h>
+
 #include <Eigen/Core>
 #include <utility>
+#include <vector>
 
+#include "ident/problem/fit_problem.h"
 #include "residuals/normal_equations.h"
 
 namespace pushid {
-
-// J'J and J'r of some rows.
-struct SecondOrder {
-  Eigen::MatrixXd information;
-  Eigen::VectorXd gradient;
-
-  static SecondOrder Zero(Eigen::Index columns) {
-    return {Eigen::MatrixXd::Zero(columns, columns), Eigen::VectorXd::Zero(columns)};
-  }
-};
-
-// What the rows of all recordings sum to at a point, by the weights that they have there.
-struct RecordingSums {
-  Eigen::VectorXd at;  // of the columns; empty: nowhere
-  double squares = 0.0;
-  SecondOrder sums;
-
-  bool AreAt(const Eigen::VectorXd& x) const { return at.size() == x.size() && at == x; }
-};
-
-// Problems of more columns are solved without: these are of units (subjects, settings), of which a
-// recording has few, or of a network's weights, and a unit's column has its prior.
-inline constexpr int kDenseColumns = 50;
 
 class StructuredSecants {
  public:
@@ -68,6 +51,48 @@ class StructuredSecants {
   Eigen::VectorXd x_, curved_gradient_, gradient_;
   Eigen::MatrixXd information_;
   double cost_ = 0.0;
+};
+
+// One block of all parameters that move, in the order of the problem's blocks; one row more than
+// there are. Ceres asks for derivatives only where it has accepted a step. Loss functions and
+// manifolds of the problem are not looked at; it has none.
+class SummedCost : public ceres::CostFunction {
+ public:
+  // known: sums of the recordings at a point; empty: none.
+  SummedCost(FitProblem::Built* built, StructuredSecants secants, RecordingSums known);
+  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override;
+
+  // The values of the problem's blocks that move.
+  std::vector<double> Values() const;
+  void SetValues(const double* x) const;
+  void SetBounds(ceres::Problem* problem, double* x) const;
+  // Where derivatives were asked for last.
+  const RecordingSums& recordings() const { return recordings_; }
+
+ private:
+  struct Block {  // of parameters
+    double* values;
+    int column, size;
+  };
+  struct Part {
+    const ceres::CostFunction* cost;
+    bool of_recording;
+    std::vector<const double*> on;
+    std::vector<int> columns;                 // of each block; -1: it stays
+    const RolloutSums* sums;                  // of a rollout in lanes; null of others
+    std::vector<std::vector<int>> of_acting;  // columns that move each of the rollout's own
+  };
+  // sum: null without derivatives.
+  static bool AddPart(const Part& part, double* squares, SecondOrder* sum);
+  bool AddParts(bool of_recordings, double* squares, SecondOrder* sum) const;
+  bool SetCost(double squares, double* residuals) const;
+
+  FitProblem::Built& built_;
+  std::vector<Block> moving_;
+  std::vector<Part> parts_;
+  mutable StructuredSecants secants_;
+  mutable RecordingSums recordings_;
+  mutable double squares_ = 0.0;  // where derivatives were asked for last
 };
 
 }  // namespace pushid

@@ -17,37 +17,10 @@
 namespace pushid {
 namespace {
 
-// The values of one replica: empty for a fit that failed.
-using ReplicaValues = std::vector<double>;
-
 // Function tolerance: what a smaller one would change is a hundredth of what replicas differ by.
 constexpr double kReplicaTolerance = 1e-6;
 
-// The combinations that move with a free parameter.
-std::vector<CombinationSpec> MovingCombinations(const FitProblem& problem) {
-  std::vector<CombinationSpec> moving;
-  for (const CombinationSpec& spec : DerivedCombinations(problem.options().model)) {
-    const bool moves = std::any_of(
-        spec.terms.begin(), spec.terms.end(),
-        [&problem](const Term& term) { return problem.options().table[term.parameter].free; });
-    if (moves) moving.push_back(spec);
-  }
-  return moving;
-}
-
-ReplicaValues ValuesAt(const FitProblem& problem, const FitPoint& point,
-                       const std::vector<CombinationSpec>& combinations) {
-  const ParameterSet<double> parameters = problem.Parameters(point, "");
-  ReplicaValues values = problem.SharedValues(point);
-  for (const CombinationSpec& spec : combinations) {
-    double sum = 0.0;
-    for (const Term& term : spec.terms) sum += term.coefficient * parameters[term.parameter];
-    values.push_back(sum);
-  }
-  return values;
-}
-
-// What each recording's rows sum to at the estimate, so that no replica need evaluate them there;
+// The sums of each recording's rows at the estimate, so that no replica need evaluate them there;
 // empty where replicas are not solved by such sums.
 std::vector<RecordingSums> SumEach(const FitProblem& problem, FitPoint estimate) {
   if (problem.options().likelihood != Likelihood::kTrajectory) return {};
@@ -75,9 +48,11 @@ RecordingSums SumAsDrawn(const std::vector<RecordingSums>& each, const FitProble
   return all;
 }
 
-ReplicaValues FitReplica(const FitProblem& problem, const FitPoint& estimate,
-                         const std::vector<RecordingSums>& each, const std::vector<int>& counts,
-                         const std::vector<CombinationSpec>& combinations) {
+// Free parameters, then combinations; empty for a fit that failed.
+std::vector<double> FitReplica(const FitProblem& problem, const FitPoint& estimate,
+                               const std::vector<RecordingSums>& each,
+                               const std::vector<int>& counts,
+                               const std::vector<CombinationSpec>& combinations) {
   FitOptions options = problem.options();
   options.num_threads = 1;
   options.function_tolerance = std::max(kReplicaTolerance, options.function_tolerance);
@@ -85,37 +60,14 @@ ReplicaValues FitReplica(const FitProblem& problem, const FitPoint& estimate,
   SolveStart fit = Refit(drawn, estimate, 1, SumAsDrawn(each, drawn));
   if (!fit.usable) fit = SolveFrom(drawn, drawn.NominalPoint(), "nominal", nullptr);
   if (!fit.converged || !fit.failed.empty()) return {};
-  return ValuesAt(drawn, fit.to, combinations);
-}
-
-// Replicas that are the same fit: of few people there are few different draws.
-struct Draw {
-  std::vector<int> counts, replicas;
-};
-std::vector<Draw> DistinctDraws(const ResamplingUnits& from, const BootstrapOptions& options) {
-  std::vector<Draw> draws;
-  std::map<std::vector<int>, size_t> found;
-  for (int k = 0; k < options.replicas; ++k) {
-    std::vector<int> counts = DrawRecordings(from, options.seed, k);
-    const auto [at, is_new] = found.try_emplace(counts, draws.size());
-    if (is_new) draws.push_back({std::move(counts), {}});
-    draws[at->second].replicas.push_back(k);
+  const ParameterSet<double> parameters = drawn.Parameters(fit.to, "");
+  std::vector<double> values = drawn.SharedValues(fit.to);
+  for (const CombinationSpec& spec : combinations) {
+    double sum = 0.0;
+    for (const Term& term : spec.terms) sum += term.coefficient * parameters[term.parameter];
+    values.push_back(sum);
   }
-  return draws;
-}
-
-void Summarize(Bootstrap* bootstrap) {
-  const size_t rows = bootstrap->values.size();
-  for (size_t p = 0; p < bootstrap->names.size(); ++p) {
-    std::vector<double> column;
-    for (const std::vector<double>& row : bootstrap->values) column.push_back(row[p]);
-    double mean = 0.0, squares = 0.0;
-    for (double value : column) mean += value / static_cast<double>(rows);
-    for (double value : column) squares += (value - mean) * (value - mean);
-    bootstrap->standard_error.push_back(std::sqrt(squares / std::max(1.0, rows - 1.0)));
-    bootstrap->lower95.push_back(Quantile(column, 0.025));
-    bootstrap->upper95.push_back(Quantile(column, 0.975));
-  }
+  return values;
 }
 
 constexpr double kDriftErrors = 2.0;
@@ -126,23 +78,18 @@ std::vector<double> Errors(const Uncertainty& uncertainty, size_t count) {
   return errors;
 }
 
-template <typename T>
-void Cut(int frames, std::vector<std::vector<T>>* people) {
-  for (std::vector<T>& person : *people) {
-    if (static_cast<int>(person.size()) > frames) person.resize(frames);
-  }
-}
-
 HorizonFit FitFirst(const FitProblem& whole, int frames) {
   HorizonFit fit{frames, {}, {}, ""};
   std::vector<PendulumRecording> first = whole.recordings();
   for (PendulumRecording& r : first) {
     // Frame 0 and the steps to `frames`. The pushes stay whole: a tail knows the mean of its push.
-    const int last = PushFrame(r) + frames + 1;
-    Cut(last, &r.states);
-    Cut(last, &r.rod_length);
-    Cut(last, &r.hip);
-    Cut(last, &r.weight);
+    const auto cut = [last = static_cast<size_t>(PushFrame(r) + frames + 1)](auto* people) {
+      for (auto& person : *people) person.resize(std::min(person.size(), last));
+    };
+    cut(&r.states);
+    cut(&r.rod_length);
+    cut(&r.hip);
+    cut(&r.weight);
   }
   FitOptions options = whole.options();
   options.num_threads = 1;
@@ -215,7 +162,14 @@ Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& es
                  " needs at least two of them" +
                  (people ? "; --bootstrap_by=recording draws recordings" : "")};
   }
-  const std::vector<CombinationSpec> combinations = MovingCombinations(problem);
+  std::vector<CombinationSpec> combinations = DerivedCombinations(problem.options().model);
+  const auto stays = [&problem](const CombinationSpec& spec) {
+    return std::none_of(spec.terms.begin(), spec.terms.end(), [&problem](const Term& term) {
+      return problem.options().table[term.parameter].free;
+    });
+  };
+  combinations.erase(std::remove_if(combinations.begin(), combinations.end(), stays),
+                     combinations.end());
   Bootstrap bootstrap;
   bootstrap.replicas = options.replicas;
   bootstrap.seed = options.seed;
@@ -231,25 +185,37 @@ Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& es
     bootstrap.units.push_back(spec.unit);
   }
 
-  std::vector<ReplicaValues> replicas(options.replicas);
-  const std::vector<Draw> draws = DistinctDraws(from, options);
+  // Replicas that are the same fit: of few people there are few different draws.
+  std::map<std::vector<int>, std::vector<int>> replicas_of;
+  for (int k = 0; k < options.replicas; ++k) {
+    replicas_of[DrawRecordings(from, options.seed, k)].push_back(k);
+  }
+  const std::vector<std::pair<std::vector<int>, std::vector<int>>> draws(replicas_of.begin(),
+                                                                         replicas_of.end());
+  std::vector<std::vector<double>> replicas(options.replicas);
   const std::vector<RecordingSums> each = SumEach(problem, estimate);
   ParallelFor(
       static_cast<int>(draws.size()), options.num_threads,
       [&](int i) {
-        const Draw& draw = draws[i];
-        const ReplicaValues values = FitReplica(problem, estimate, each, draw.counts, combinations);
-        for (int k : draw.replicas) replicas[k] = values;
+        const auto& [counts, same] = draws[i];
+        const auto values = FitReplica(problem, estimate, each, counts, combinations);
+        for (int k : same) replicas[k] = values;
       },
       progress);
-  for (const ReplicaValues& values : replicas) {
-    if (values.empty()) {
-      ++bootstrap.failed;
-    } else {
-      bootstrap.values.push_back(values);
-    }
+  for (std::vector<double>& values : replicas) {
+    if (!values.empty()) bootstrap.values.push_back(std::move(values));
   }
-  Summarize(&bootstrap);
+  bootstrap.failed = options.replicas - static_cast<int>(bootstrap.values.size());
+  for (size_t p = 0; p < bootstrap.names.size(); ++p) {
+    std::vector<double> column;
+    for (const std::vector<double>& row : bootstrap.values) column.push_back(row[p]);
+    double mean = 0.0, squares = 0.0;
+    for (double value : column) mean += value / static_cast<double>(column.size());
+    for (double value : column) squares += (value - mean) * (value - mean);
+    bootstrap.standard_error.push_back(std::sqrt(squares / std::max(1.0, column.size() - 1.0)));
+    bootstrap.lower95.push_back(Quantile(column, 0.025));
+    bootstrap.upper95.push_back(Quantile(column, 0.975));
+  }
   return bootstrap;
 }
 

@@ -1,14 +1,11 @@
 // ident: the fit repeated: on other people and on other horizons.
 //
-// Bootstrap over clusters: the fit repeated on people (or recordings) drawn with
-// replacement, as many as there are. What errs together is drawn together: all recordings of a
-// person, or all frames of a recording (covariance.h). Every replica starts from the estimate; one
-// that does not converge from there is tried from the nominal values through all horizons.
-//
-// Where people share recordings nobody can be drawn alone, and the published groups are all tied
-// together: there recordings are drawn, which leaves out what a person does in all of them.
-//
-// Replica k depends on the seed and k alone, so any number of threads ends with the same rows.
+// Bootstrap over clusters: the fit repeated on people (or recordings) drawn with replacement, as
+// many as there are. Recordings that err together are drawn together (covariance.h). Where people
+// share recordings nobody can be drawn alone, and the published groups are all tied together: there
+// recordings are drawn, which leaves out what a person does in all of them. Every replica starts
+// from the estimate; one that does not converge from there is tried from the nominal values through
+// all horizons. Replica k depends on the seed and k alone, so threads make no difference.
 #pragma once
 
 #include <cstdint>
@@ -51,7 +48,7 @@ Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& es
                                    const BootstrapOptions& options,
                                    const JobProgress& progress = nullptr);
 
-// What is drawn: recordings that go together, each in one unit.
+// Recordings that are drawn together, each in one unit.
 struct ResamplingUnits {
   ClusterBy by = ClusterBy::kRecording;
   bool people_shared = false;
@@ -74,19 +71,16 @@ inline double DistinctResamples(int units) {
   return number;
 }
 
-// How the estimates depend on the horizon, with its table and its words.
-//
 // A parameter that means something keeps its value however long the rollouts are; one that drifts
 // stands for what the model leaves out. The fit is repeated on the motion up to 8, 16, 32 and 64
 // frames after the first push of every recording began (FitOptions::horizons), each on its own and
-// with everything that the whole fit has. Two fits of one study share their people, so their
-// difference is known better than either value; that it is larger than twice the larger of the two
-// errors is called a drift. It sees faults that the verdict does not: on the people of
-// tests/studies/world.py it drifts in 15 of 49 studies with a fault that passes the verdict, in 1
-// of 30 without. Rejected: the stages of the solver, which stop early and know no settling; other
-// priors and other pushes, which found nothing that shares, verdict and horizons do not.
+// with everything that the whole fit has. A difference of more than twice the larger of the two
+// errors is a drift (two fits of one study share their people, so that it is known better than
+// either value). It sees faults that the verdict does not: on the people of tests/studies/world.py
+// it drifts in 15 of 49 studies with a fault that passes the verdict, in 1 of 30 without. Rejected:
+// the stages of the solver, which stop early and know no settling; other priors and other pushes,
+// which found nothing that shares, verdict and horizons do not.
 
-class FitProblem;
 struct Uncertainty;
 
 struct HorizonFit {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
+#include <set>
 
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/statistics.h"
@@ -31,71 +31,48 @@ double QuantileAt(double level, double freedom) {
   return 0.5 * (low + high);
 }
 
+// In order of first appearance, by the values that they were recorded with.
 void AddPeople(const std::vector<PendulumRecording>& recordings, Contrast* contrast) {
   std::vector<std::string> order;
-  std::map<std::string, std::pair<bool, bool>> seen;
+  std::map<std::string, std::set<std::string>> values;
   for (const PendulumRecording& recording : recordings) {
     for (int n = 0; n < recording.num_people(); ++n) {
       const std::string& id = recording.subject_ids[n];
-      const std::string value = LabelOf(recording, n, contrast->label);
-      if (seen.count(id) == 0) order.push_back(id);
-      seen[id].first = seen[id].first || value == contrast->first;
-      seen[id].second = seen[id].second || value == contrast->second;
+      if (values.count(id) == 0) order.push_back(id);
+      values[id].insert(LabelOf(recording, n, contrast->label));
     }
   }
   for (const std::string& id : order) {
-    const auto& [first, second] = seen[id];
-    if (first && second) {
-      contrast->both.push_back(id);
-    } else if (first || second) {
-      (first ? contrast->only_first : contrast->only_second).push_back(id);
-    }
+    const bool first = values[id].count(contrast->first) > 0;
+    const bool second = values[id].count(contrast->second) > 0;
+    if (!first && !second) continue;
+    (first && second ? contrast->both
+     : first         ? contrast->only_first
+                     : contrast->only_second)
+        .push_back(id);
   }
 }
 
 }  // namespace
 
-std::vector<double> HolmCorrected(const std::vector<double>& p) {
-  std::vector<size_t> order(p.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto known = [&p](size_t i) { return std::isnan(p[i]) ? 1.0 : p[i]; };
-  const size_t counted = static_cast<size_t>(
-      std::count_if(p.begin(), p.end(), [](double one) { return !std::isnan(one); }));
-  std::stable_sort(order.begin(), order.end(),
-                   [&known](size_t i, size_t j) { return known(i) < known(j); });
-  std::vector<double> corrected(p.size());
-  double largest = 0.0;
-  for (size_t k = 0; k < order.size(); ++k) {
-    const double times = k < counted ? static_cast<double>(counted - k) : 1.0;
-    largest = std::max(largest, std::min(1.0, times * known(order[k])));
-    corrected[order[k]] = largest;
-  }
-  return corrected;
-}
-
 double ProbabilityOfZero(const Scatter& scatter, const Eigen::VectorXd& coefficients,
                          double value) {
-  struct Known {
-    double variance, freedom;
-  };
-  std::vector<Known> parts;
+  std::vector<ScatterOf> parts;
   double sum = 0.0;
   for (const Scatter::Part& part : scatter.parts) {
-    Scatter alone;
-    alone.parts = {part};
-    const ScatterOf of = alone.Of(coefficients);
-    parts.push_back({of.standard_error * of.standard_error, of.freedom});
-    sum += parts.back().variance;
+    parts.push_back(Scatter{{part}}.Of(coefficients));
+    sum += parts.back().standard_error * parts.back().standard_error;
   }
   if (!std::isfinite(sum) || !std::isfinite(value) || sum <= 0.0) return 1.0;
   double low = std::log(kLeastLevel), high = 0.0;  // of the level
   for (int i = 0; i < 60; ++i) {
     const double level = std::exp(0.5 * (low + high));
     double squared_width = 0.0;
-    for (const Known& part : parts) {
-      if (part.variance <= 0.0) continue;
+    for (const ScatterOf& part : parts) {
+      const double variance = part.standard_error * part.standard_error;
+      if (variance <= 0.0) continue;
       const double quantile = QuantileAt(level, part.freedom);
-      squared_width += quantile * quantile * part.variance;
+      squared_width += quantile * quantile * variance;
     }
     (squared_width > value * value ? low : high) = std::log(level);
   }
@@ -146,23 +123,25 @@ bool JudgeByPeople(Transform transform, const std::vector<OwnEstimate>& people, 
 }
 
 void CorrectForRows(Contrast* contrast) {
-  std::vector<double> p;
-  for (const ContrastRow& row : contrast->rows) {
-    p.push_back(row.status == EstimateStatus::kUnidentifiable
-                    ? std::numeric_limits<double>::quiet_NaN()
-                    : row.p);
+  std::vector<ContrastRow*> counted;
+  for (ContrastRow& row : contrast->rows) {
+    row.p_holm = 1.0;
+    if (row.status != EstimateStatus::kUnidentifiable) counted.push_back(&row);
   }
-  const std::vector<double> corrected = HolmCorrected(p);
-  for (size_t i = 0; i < p.size(); ++i) contrast->rows[i].p_holm = corrected[i];
+  std::stable_sort(counted.begin(), counted.end(),
+                   [](const ContrastRow* a, const ContrastRow* b) { return a->p < b->p; });
+  double largest = 0.0;
+  for (size_t k = 0; k < counted.size(); ++k) {
+    const double times = static_cast<double>(counted.size() - k);
+    largest = std::max(largest, std::min(1.0, times * counted[k]->p));
+    counted[k]->p_holm = largest;
+  }
 }
 
 std::optional<Contrast> ContrastAt(const FitProblem& problem, const FitPoint& point,
                                    const Uncertainty& u) {
   const FitOptions& options = problem.options();
   const Eigen::Index fitted = static_cast<Eigen::Index>(problem.map().fitted.size());
-  const auto column = [&problem](Parameter id) {
-    return static_cast<Eigen::Index>(problem.FittedIndex(id));
-  };
   const Eigen::Index size = u.covariance.rows();
   const ParameterSet<double> values = problem.Parameters(point, "");
   Contrast contrast;
@@ -173,7 +152,8 @@ std::optional<Contrast> ContrastAt(const FitProblem& problem, const FitPoint& po
     contrast.first = between.first;
     contrast.second = between.second;
     const ParameterSpec& of = options.table[slope.slope_of->target];
-    const Eigen::Index shared = column(of.id), own = column(slope.id);
+    const auto shared = static_cast<Eigen::Index>(problem.FittedIndex(of.id));
+    const auto own = static_cast<Eigen::Index>(problem.FittedIndex(slope.id));
     if (own >= fitted) continue;
     const double b = values[slope.id];
     ContrastRow row;

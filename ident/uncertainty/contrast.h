@@ -1,16 +1,16 @@
-// ident: what a contrast says: the difference of every parameter between two values of a label.
+// ident: a contrast, the difference of every parameter between two values of a label.
 //
 // With b the fitted slope of a parameter and s its shared value on the fitted scale (log of a
 // positive parameter), people have natural(s - b/2) where the label has its first value and
 // natural(s + b/2) where it has its second, so that where the same people are in both they are
 // compared with themselves: their scores go into one cluster, and what they have in common drops
-// out. Of these are
+// out. The result has
 //   difference   natural(s + b/2) - natural(s - b/2), its interval by the delta method, from the
 //                same parts of the covariance as every other interval (covariance.h)
 //   p            of b = 0: the level at which the interval of b ends at 0
-//   Holm's p     the same, corrected for all parameters of the contrast (Holm 1979): with the m
-//                p values in ascending order, the largest of (m - k + 1) p_k up to each, at most 1.
-//                The chance of any false positive among them is then at most the level.
+//   Holm's p     corrected for all parameters of the contrast (Holm 1979), so that the chance of
+//   any
+//                false positive among them is at most the level
 //
 // People who were recorded alone are judged by a t-test of their own fits instead (OwnEstimate),
 // which finds as many true differences as a test in two stages does, the joint fit half of them
@@ -47,9 +47,6 @@ struct Contrast {
   std::vector<ContrastRow> rows;  // in the order of the table of parameters
 };
 
-// Holm's, in the order of `p`. Those that are NaN come out as 1 and are not counted.
-std::vector<double> HolmCorrected(const std::vector<double>& p);
-
 // The level at which an interval of half-width sqrt(sum of t_k^2 V_k) ends at 0 (covariance.h); 1
 // where nothing is known of the error.
 double ProbabilityOfZero(const Scatter& scatter, const Eigen::VectorXd& coefficients, double value);
@@ -68,7 +65,8 @@ struct OwnEstimate {
 // value, or no scatter.
 bool JudgeByPeople(Transform transform, const std::vector<OwnEstimate>& people, ContrastRow* row);
 
-// Holm's p of all rows; those that are unidentifiable are not counted.
+// Holm's p of all rows: with the m p values in ascending order, the largest of (m - k + 1) p_k up
+// to each, at most 1. Unidentifiable rows are not counted and have 1.
 void CorrectForRows(Contrast* contrast);
 
 // None where the fit has no contrast.

@@ -1,4 +1,4 @@
-// ident: people, recordings and line-ups as clusters.
+// ident: people, recordings and line-ups as clusters; the weight of the data; CR2.
 #include "ident/uncertainty/covariance.h"
 
 #include <algorithm>
@@ -9,68 +9,18 @@
 #include <numeric>
 #include <utility>
 
+#include "datasets/files/names.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/residual_rows.h"
 #include "ident/problem/statistics.h"
-#include "ident/solver/structured_secants.h"
 #include "models/decompositions.h"
 #include "residuals/plate_residual.h"
 
 namespace pushid {
 namespace {
 
-// The scatter of fewer line-ups cannot be estimated, and recordings stand for them.
-constexpr size_t kFewestLineUps = 4;
-
-// Equal for the same people in the same order.
-std::string LineUpKey(const PendulumRecording& recording) {
-  std::string key;
-  for (const std::string& person : recording.subject_ids) key += person + "\n";
-  return key;
-}
-
-constexpr double kLeastKept = 0.01;
-constexpr double kNoLeverage = 1e-13;  // moves a score by half as much
-
-Eigen::MatrixXd Centred(const Eigen::MatrixXd& columns) {
-  return columns.colwise() - columns.rowwise().mean().eval();
-}
-
-// What leaving a cluster out would leave of a direction, by the eigenvalues of M_g. A direction
-// that one cluster alone determines is counted as ten times what its score says, no more: with
-// second derivatives in H leverages may pass one.
-Eigen::ArrayXd Kept(const Eigen::ArrayXd& leverage) { return (1.0 - leverage).max(kLeastKept); }
-
-// F of J base, with F'F that of all its rows.
-Eigen::MatrixXd FewRows(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& base) {
-  std::vector<Eigen::Index> used, filled;
-  for (Eigen::Index column = 0; column < jacobian.cols(); ++column) {
-    if (!jacobian.col(column).isZero(0.0)) used.push_back(column);
-  }
-  for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
-    if (!jacobian.row(row).isZero(0.0)) filled.push_back(row);
-  }
-  const Eigen::MatrixXd packed = jacobian(filled, used), own = base(used, Eigen::all);
-  if (filled.size() <= used.size()) return packed * own;  // condensed already
-  const SymmetricEigen squares = DecomposeSymmetric(packed.transpose() * packed);
-  return squares.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-         (squares.vectors.transpose() * own);
-}
-
-// The directions of M_g = W'W that it is not zero in, and its eigenvalues there.
-struct Leverage {
-  Eigen::ArrayXd m;
-  Eigen::MatrixXd v;  // a column each
-
-  explicit Leverage(const Eigen::MatrixXd& w) : m(0), v(w.cols(), 0) {
-    if (w.rows() == 0) return;
-    const SymmetricEigen eigen = DecomposeSymmetric(w * w.transpose());
-    const Eigen::ArrayXd values = eigen.values.array();
-    const Eigen::Index some = (values > kNoLeverage).count();  // they ascend
-    m = values.tail(some);
-    v = w.transpose() * eigen.vectors.rightCols(some) * m.rsqrt().matrix().asDiagonal();
-  }
-};
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr size_t kFewestLineUps = 4;  // the scatter of fewer cannot be estimated
 
 }  // namespace
 
@@ -105,10 +55,19 @@ Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterB
     }
     clusters.of.push_back(std::move(of));
     const int next = static_cast<int>(line_ups.size());
-    clusters.line_up.push_back(line_ups.emplace(LineUpKey(r), next).first->second);
+    clusters.line_up.push_back(line_ups.emplace(Joined(r.subject_ids, "\n"), next).first->second);
   }
   if (line_ups.size() < kFewestLineUps) {
     std::iota(clusters.line_up.begin(), clusters.line_up.end(), 0);
+  }
+  return clusters;
+}
+
+RowClusters ClusterByRecording(const ResidualRows& score) {
+  RowClusters clusters;
+  for (int cluster : score.cluster_of_row) {
+    clusters.of_row.push_back(std::max(-1, cluster));
+    clusters.count = std::max(clusters.count, cluster + 1);
   }
   return clusters;
 }
@@ -122,33 +81,59 @@ Clustering ClusterRows(const FitProblem& problem, const Clusters& clusters,
   rows.first.count = clusters.count();
   for (size_t row = 0; row < score.cluster_of_row.size(); ++row) {
     const int recording = score.cluster_of_row[row];
-    if (recording < 0 || clusters.of[recording].empty()) {
-      rows.first.of_row.push_back(-1);
-      continue;
-    }
-    rows.first.of_row.push_back(clusters.of[recording][score.person_of_row[row]]);
-  }
-  if (clusters.two_way) {
-    for (size_t row = 0; row < score.cluster_of_row.size(); ++row) {
-      const int line_up =
-          rows.first.of_row[row] < 0 ? -1 : clusters.line_up[score.cluster_of_row[row]];
-      rows.line_ups.of_row.push_back(line_up);
-      rows.line_ups.count = std::max(rows.line_ups.count, line_up + 1);
-    }
+    const bool none = recording < 0 || clusters.of[recording].empty();
+    rows.first.of_row.push_back(none ? -1 : clusters.of[recording][score.person_of_row[row]]);
+    if (!clusters.two_way) continue;
+    rows.line_ups.of_row.push_back(none ? -1 : clusters.line_up[recording]);
+    rows.line_ups.count = std::max(rows.line_ups.count, rows.line_ups.of_row.back() + 1);
   }
   if (clusters.by == ClusterBy::kSubject) rows.recordings = ClusterByRecording(score);
   return rows;
 }
 
-RowClusters ClusterByRecording(const ResidualRows& score) {
-  RowClusters clusters;
-  for (int cluster : score.cluster_of_row) {
-    clusters.of_row.push_back(std::max(-1, cluster));
-    clusters.count = std::max(clusters.count, cluster + 1);
+namespace {
+
+constexpr double kLeastKept = 0.01;
+constexpr double kNoLeverage = 1e-13;  // moves a score by half as much
+
+// F of J base, with F'F that of all its rows.
+Eigen::MatrixXd FewRows(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& base) {
+  std::vector<Eigen::Index> used, filled;
+  for (Eigen::Index column = 0; column < jacobian.cols(); ++column) {
+    if (!jacobian.col(column).isZero(0.0)) used.push_back(column);
   }
-  return clusters;
+  for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
+    if (!jacobian.row(row).isZero(0.0)) filled.push_back(row);
+  }
+  const Eigen::MatrixXd packed = jacobian(filled, used), own = base(used, Eigen::all);
+  if (filled.size() <= used.size()) return packed * own;  // condensed already
+  const SymmetricEigen squares = DecomposeSymmetric(packed.transpose() * packed);
+  return squares.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+         (squares.vectors.transpose() * own);
 }
 
+// The directions of M_g = W'W that it is not zero in, and its eigenvalues there.
+struct Leverage {
+  Eigen::ArrayXd m;
+  Eigen::MatrixXd v;  // a column each
+
+  explicit Leverage(const Eigen::MatrixXd& w) : m(0), v(w.cols(), 0) {
+    if (w.rows() == 0) return;
+    const SymmetricEigen eigen = DecomposeSymmetric(w * w.transpose());
+    const Eigen::ArrayXd values = eigen.values.array();
+    const Eigen::Index some = (values > kNoLeverage).count();  // they ascend
+    m = values.tail(some);
+    v = w.transpose() * eigen.vectors.rightCols(some) * m.rsqrt().matrix().asDiagonal();
+  }
+};
+
+// J_g'J_g = F_g'F_g and s_g of every cluster that has rows, in the coordinates of `base`'s columns.
+// F_g has no more rows than J_g has columns that are not zero: few where units have columns of
+// their own.
+struct ClusterScores {
+  std::vector<Eigen::MatrixXd> factors;
+  Eigen::MatrixXd scores;  // a column for each
+};
 ClusterScores GatherScores(const ResidualRows& score, const RowClusters& clusters,
                            const Eigen::MatrixXd& base) {
   std::vector<std::vector<int>> rows(clusters.count);
@@ -170,6 +155,11 @@ ClusterScores GatherScores(const ResidualRows& score, const RowClusters& cluster
   return gathered;
 }
 
+struct ClusteredCovariance {
+  Eigen::MatrixXd covariance;
+  Eigen::VectorXd freedom;  // of each coefficient; 1 to G - 1
+};
+// hessian: of the cost, in the same coordinates. coefficients: rows c whose freedom is asked for.
 ClusteredCovariance Cr2(const ClusterScores& scores, const Eigen::MatrixXd& hessian,
                         const Eigen::MatrixXd& coefficients) {
   const Eigen::MatrixXd root = DecomposeSymmetric(hessian).InverseSqrt();
@@ -180,7 +170,10 @@ ClusteredCovariance Cr2(const ClusterScores& scores, const Eigen::MatrixXd& hess
   std::vector<Eigen::MatrixXd> u;     // J_g' p_g over H^1/2, a column a coefficient
   for (Eigen::Index g = 0; g < groups; ++g) {
     const auto [m, v] = Leverage(scores.factors[static_cast<size_t>(g)] * root);
-    const Eigen::ArrayXd kept = Kept(m);
+    // The share of a direction that is left without the cluster. One that a cluster alone
+    // determines is counted as ten times what its score says, no more: with second derivatives in H
+    // leverages may pass one.
+    const Eigen::ArrayXd kept = (1.0 - m).max(kLeastKept);
     const Eigen::VectorXd score = root * scores.scores.col(g);
     const Eigen::ArrayXd along_v = (v.transpose() * score).array();
     moves.col(g) = root * (score + v * (along_v * (kept.rsqrt() - 1.0)).matrix());
@@ -191,7 +184,7 @@ ClusteredCovariance Cr2(const ClusterScores& scores, const Eigen::MatrixXd& hess
   }
   ClusteredCovariance result;
   const double most = std::max(1.0, static_cast<double>(groups) - 1.0);
-  const Eigen::MatrixXd centred = Centred(moves);
+  const Eigen::MatrixXd centred = moves.colwise() - moves.rowwise().mean().eval();
   result.covariance = centred * centred.transpose();
   result.freedom.resize(size);
   for (Eigen::Index c = 0; c < size; ++c) {
@@ -205,8 +198,6 @@ ClusteredCovariance Cr2(const ClusterScores& scores, const Eigen::MatrixXd& hess
   }
   return result;
 }
-
-namespace {
 
 // Kinds of residuals in a frame (frame_residual.h): first component, how many, the median of
 // chi-squared with so many degrees of freedom, and the kind's weight in the composite likelihood.
@@ -231,7 +222,7 @@ double Median(std::vector<double>* values) {
   return *middle;
 }
 
-// What the markers' noise makes of a residual of each kind: a velocity is the difference of two
+// The markers' noise in a residual of each kind: a velocity is the difference of two
 // positions, one frame apart, of the mean of two ankles; an angle is that of a rod. Where rates
 // differ, the slowest has the least noise: one floor for all must not lie above it.
 std::array<double, 4> Floors(const FitProblem& problem) {
@@ -275,7 +266,6 @@ double CompositeInflation(const FitProblem& problem, const FitPoint& point,
 ResidualSigmas EstimateSigmas(const FitProblem& problem, const FitPoint& point) {
   ResidualSigmas sigmas = problem.options().sigmas;
   const std::array<double, 4> floors = Floors(problem);
-  double* const scales[] = {&sigmas.hip, &sigmas.velocity, &sigmas.angle, &sigmas.rate};
   std::array<std::vector<double>, 4> squares;
   std::array<std::vector<double>, 2> of_plates;
   const ResidualsByRecording all = RawResiduals(problem, point, true);
@@ -295,18 +285,18 @@ ResidualSigmas EstimateSigmas(const FitProblem& problem, const FitPoint& point) 
       }
     }
   }
+  const auto scale = [](std::vector<double>* of, double median, double weight, double least,
+                        double* sigma) {
+    if (of->empty()) return;
+    *sigma *= std::sqrt(Median(of) / median) / weight;
+    *sigma = std::max(*sigma, least / weight);
+  };
+  double* const scales[] = {&sigmas.hip, &sigmas.velocity, &sigmas.angle, &sigmas.rate};
   for (size_t k = 0; k < squares.size(); ++k) {
-    if (squares[k].empty()) continue;
-    *scales[k] *= std::sqrt(Median(&squares[k]) / kKinds[k].median) / kKinds[k].weight;
-    *scales[k] = std::max(*scales[k], floors[k] / kKinds[k].weight);
+    scale(&squares[k], kKinds[k].median, kKinds[k].weight, floors[k], scales[k]);
   }
-  double* const plate_scales[] = {&sigmas.shear, &sigmas.centre};
-  constexpr double kLeast[] = {kLeastShear, kLeastCentre};
-  for (int k = 0; k < 2; ++k) {
-    if (of_plates[k].empty()) continue;
-    *plate_scales[k] *= std::sqrt(Median(&of_plates[k]) / kPlateMedian);
-    *plate_scales[k] = std::max(*plate_scales[k], kLeast[k]);
-  }
+  scale(&of_plates[0], kPlateMedian, 1.0, kLeastShear, &sigmas.shear);
+  scale(&of_plates[1], kPlateMedian, 1.0, kLeastCentre, &sigmas.centre);
   return sigmas;
 }
 
@@ -324,96 +314,23 @@ double EstimateEffectiveWeight(const FitProblem& problem, const FitPoint& point,
   const double one_each = static_cast<double>(counted) / frames;
   if (counted < 2) return one_each;
   const double lambda = CompositeInflation(problem, point, recordings);
-  if (!(lambda > 0.0)) {
-    *recordings = {};
-    return one_each;
-  }
   // By its own sigmas no frame is worth more than one: that would undo the markers' noise.
-  const bool own = EstimatesSigmas(problem.options());
-  const double weight = own ? std::min(1.0, now / frames / lambda) : now / frames / lambda;
+  const bool own = EstimatesSigmas(problem.options()), told = lambda > 0.0;
+  const double estimate = now / frames / lambda;
+  const double weight = !told ? one_each : own ? std::min(1.0, estimate) : estimate;
   const double before = problem.options().effective_weight;
-  if (!(before > 0.0)) {  // recordings did not weigh alike
+  if (told && before > 0.0) {
+    recordings->Scale(weight / before);
+  } else {  // recordings did not weigh alike
     *recordings = {};
-    return weight;
   }
-  recordings->squares *= weight / before;
-  recordings->sums.information *= weight / before;
-  recordings->sums.gradient *= weight / before;
   return weight;
 }
 
 namespace {
 
-// The difference of two-way clustering need not be positive: negative eigenvalues become zero.
-Eigen::MatrixXd WithoutNegative(const Eigen::MatrixXd& covariance) {
-  const SymmetricEigen eigen = DecomposeSymmetric(covariance);
-  const Eigen::MatrixXd& v = eigen.vectors;
-  return v * eigen.values.cwiseMax(0.0).asDiagonal() * v.transpose();
-}
-
-// H^-1 s_g G / (G - 1) for each recording.
-Eigen::MatrixXd LeftOutMoves(const ResidualRows& score, const Eigen::MatrixXd& inverse_hessian) {
-  const double groups = static_cast<double>(score.clusters.size());
-  Eigen::MatrixXd moves(inverse_hessian.cols(), score.clusters.size());
-  for (size_t g = 0; g < score.clusters.size(); ++g) {
-    const Eigen::VectorXd gradient = score.Gradient(score.RowsOf(score.clusters[g]));
-    moves.col(g) = groups / (groups - 1.0) * inverse_hessian * gradient;
-  }
-  return moves;
-}
-
-// The clusters of both ways together: pairs that occur.
-RowClusters Crossed(const RowClusters& first, const RowClusters& second) {
-  RowClusters both;
-  std::map<std::pair<int, int>, int> index;
-  for (size_t row = 0; row < first.of_row.size(); ++row) {
-    const int a = first.of_row[row], b = second.of_row[row];
-    both.of_row.push_back(
-        a < 0 ? -1 : index.emplace(std::pair(a, b), static_cast<int>(index.size())).first->second);
-  }
-  both.count = static_cast<int>(index.size());
-  return both;
-}
-
-void SplitHessian(const ResidualRows& score, const Eigen::MatrixXd& back, Covariance* c) {
-  const std::vector<int> prior = score.RowsOf(FitProblem::kPriorCluster);
-  const std::vector<int> settling = score.RowsOf(FitProblem::kSettlingCluster);
-  c->by_data = score.robust_jacobian.size() > 0
-                   ? Eigen::MatrixXd(score.robust_jacobian.transpose() * score.robust_jacobian)
-                   : score.Information(score.RowsOfData());
-  c->by_prior = score.Information(prior);
-  c->by_settling = score.Information(settling);
-  c->by_pooling = score.Information(score.RowsOf(FitProblem::kPoolingCluster)) +
-                  score.Information(score.RowsOf(FitProblem::kNetworkCluster));
-  const Eigen::MatrixXd sum =
-      back.transpose() * (c->by_data + c->by_prior + c->by_settling + c->by_pooling) * back;
-  c->inverse_of_parts = back * SolveSymmetric(sum, Eigen::MatrixXd(back.transpose()));
-  c->prior_gradient = score.Gradient(prior);
-  c->settling_gradient = score.Gradient(settling);
-}
-
-// What the recordings scatter, one way or two.
-Scatter::Part DataScatter(const ResidualRows& score, const Clustering& clustering,
-                          const ClusterScores& first, const Eigen::MatrixXd& back,
-                          const Eigen::MatrixXd& hessian) {
-  const ClusteredCovariance one = Cr2(first, hessian, back);
-  Eigen::MatrixXd inner = one.covariance;
-  if (clustering.line_ups.count > 0) {
-    const ClusteredCovariance two = Cr2(GatherScores(score, clustering.line_ups, back), hessian,
-                                        Eigen::MatrixXd(0, back.cols()));
-    const ClusterScores both =
-        GatherScores(score, Crossed(clustering.first, clustering.line_ups), back);
-    const Eigen::MatrixXd moves = SolveSymmetric(hessian, both.scores);
-    inner = WithoutNegative(one.covariance + two.covariance - moves * moves.transpose());
-  }
-  Eigen::VectorXd freedom = one.freedom;
-  if (clustering.line_ups.count > 0) {  // as the fewer of the two have
-    freedom = freedom.cwiseMin(std::max(1.0, clustering.line_ups.count - 1.0));
-  }
-  return {back * inner * back.transpose(), freedom};
-}
-
-// Empty with fewer than two clusters. inverse_hessian: in the columns as they came.
+// By recordings, one way or two, priors and pooled units. Empty with fewer than two clusters.
+// inverse_hessian: in the columns as they came.
 Scatter ClusteredScatter(const ResidualRows& score, const Clustering& clustering,
                          const Eigen::MatrixXd& back, const Eigen::MatrixXd& hessian,
                          const Eigen::MatrixXd& inverse_hessian) {
@@ -421,13 +338,31 @@ Scatter ClusteredScatter(const ResidualRows& score, const Clustering& clustering
   if (clustering.first.count < 2) return scatter;
   const ClusterScores first = GatherScores(score, clustering.first, back);
   if (first.scores.cols() < 2) return scatter;
-  scatter.parts.push_back(DataScatter(score, clustering, first, back, hessian));
-  const auto add = [&](int cluster, double freedom) {
+  auto [inner, freedom] = Cr2(first, hessian, back);
+  if (clustering.line_ups.count > 0) {
+    const ClusteredCovariance two = Cr2(GatherScores(score, clustering.line_ups, back), hessian,
+                                        Eigen::MatrixXd(0, back.cols()));
+    RowClusters both;  // pairs that occur
+    std::map<std::pair<int, int>, int> index;
+    for (size_t row = 0; row < clustering.first.of_row.size(); ++row) {
+      const std::pair pair(clustering.first.of_row[row], clustering.line_ups.of_row[row]);
+      const int next = static_cast<int>(index.size());
+      both.of_row.push_back(pair.first < 0 ? -1 : index.emplace(pair, next).first->second);
+    }
+    both.count = static_cast<int>(index.size());
+    const Eigen::MatrixXd moves = SolveSymmetric(hessian, GatherScores(score, both, back).scores);
+    // The difference need not be positive: negative eigenvalues become zero.
+    const auto [values, v] = DecomposeSymmetric(inner + two.covariance - moves * moves.transpose());
+    inner = v * values.cwiseMax(0.0).asDiagonal() * v.transpose();
+    // As the fewer of the two have.
+    freedom = freedom.cwiseMin(std::max(1.0, clustering.line_ups.count - 1.0)).eval();
+  }
+  scatter.parts.push_back({back * inner * back.transpose(), freedom});
+  const auto add = [&](int cluster, double known) {
     scatter.Add(inverse_hessian * score.Information(score.RowsOf(cluster)) * inverse_hessian,
-                freedom);
+                known);
   };
-  constexpr double kCertain = std::numeric_limits<double>::infinity();
-  if (clustering.priors_scatter) add(FitProblem::kPriorCluster, kCertain);
+  if (clustering.priors_scatter) add(FitProblem::kPriorCluster, kInfinite);
   if (clustering.pooled_units > 1) add(FitProblem::kPoolingCluster, clustering.pooled_units - 1.0);
   return scatter;
 }
@@ -443,7 +378,7 @@ RecordingSums SumRows(const ResidualRows& score, const FitPoint& point,
 }
 
 double SingularDirections::Condition() const {
-  return rank > 0 ? singular[0] / singular[rank - 1] : std::numeric_limits<double>::infinity();
+  return rank > 0 ? singular[0] / singular[rank - 1] : kInfinite;
 }
 
 SingularDirections Decompose(const Eigen::MatrixXd& jacobian, double null_value) {
@@ -459,11 +394,10 @@ SingularDirections Decompose(const Eigen::MatrixXd& jacobian, double null_value)
   return directions;
 }
 
-Covariance NaiveCovariance(const ResidualRows& score, const Eigen::VectorXd& unit,
-                           double null_value) {
-  const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
+Covariance ComputeCovariance(const ResidualRows& score, const Eigen::VectorXd& unit,
+                             const Clustering& clustering, double null_value) {
   Covariance c;
-  c.directions = Decompose(scaled, null_value);
+  c.directions = Decompose(score.jacobian * unit.asDiagonal(), null_value);
   const int rank = c.directions.rank;
   double sum = 0.0;
   for (int row = 0; row < score.residuals.size(); ++row) {
@@ -472,26 +406,29 @@ Covariance NaiveCovariance(const ResidualRows& score, const Eigen::VectorXd& uni
   c.naive_freedom = std::max(1, score.num_data_rows - rank);
   c.sigma = std::sqrt(sum / c.naive_freedom);
 
-  // Rows of data scatter by sigma; priors and demands are in units of their own.
+  // In the base of the identified directions, then back to the columns as they came. Rows of data
+  // scatter by sigma; priors and demands are in units of their own.
   const Eigen::MatrixXd back = unit.asDiagonal() * c.directions.v.leftCols(rank);
   const Eigen::VectorXd squared = c.directions.singular.head(rank).cwiseAbs2();
   const Eigen::MatrixXd beside = back.transpose() * score.InformationBeside() * back;
   const Eigen::MatrixXd data = Eigen::MatrixXd(squared.asDiagonal()) - beside;
   const Eigen::MatrixXd moves = back * squared.cwiseInverse().asDiagonal();
   c.naive = moves * (c.sigma * c.sigma * data + beside) * moves.transpose();
-  return c;
-}
 
-Covariance ComputeCovariance(const ResidualRows& score, const Eigen::VectorXd& unit,
-                             const Clustering& clustering, double null_value) {
-  Covariance c = NaiveCovariance(score, unit, null_value);
-  // In the base of the identified directions, then back to the columns as they came.
-  const int rank = c.directions.rank;
-  const Eigen::MatrixXd back = unit.asDiagonal() * c.directions.v.leftCols(rank);
-  const Eigen::VectorXd squared = c.directions.singular.head(rank).cwiseAbs2();
-  SplitHessian(score, back, &c);
+  const std::vector<int> prior = score.RowsOf(FitProblem::kPriorCluster);
+  const std::vector<int> settling = score.RowsOf(FitProblem::kSettlingCluster);
+  c.by_data = score.robust_jacobian.size() > 0
+                  ? Eigen::MatrixXd(score.robust_jacobian.transpose() * score.robust_jacobian)
+                  : score.Information(score.RowsOfData());
+  c.by_prior = score.Information(prior);
+  c.by_settling = score.Information(settling);
+  c.by_pooling = score.Information(score.RowsOf(FitProblem::kPoolingCluster)) +
+                 score.Information(score.RowsOf(FitProblem::kNetworkCluster));
+  c.prior_gradient = score.Gradient(prior);
+  c.settling_gradient = score.Gradient(settling);
   Eigen::MatrixXd hessian =
       back.transpose() * (c.by_data + c.by_prior + c.by_settling + c.by_pooling) * back;
+  c.inverse_of_parts = back * SolveSymmetric(hessian, Eigen::MatrixXd(back.transpose()));
   if (score.curvature.size() > 0) {
     const Eigen::MatrixXd full =
         Eigen::MatrixXd(squared.asDiagonal()) + back.transpose() * score.curvature * back;
@@ -510,29 +447,14 @@ Covariance ComputeCovariance(const ResidualRows& score, const Eigen::VectorXd& u
   }
   if (score.clusters.size() < 2) return c;
   c.recordings = score.clusters;
-  c.moves = LeftOutMoves(score, c.inverse_hessian);
+  const double groups = static_cast<double>(score.clusters.size());
+  c.moves.resize(c.inverse_hessian.cols(), score.clusters.size());
+  for (size_t g = 0; g < score.clusters.size(); ++g) {
+    const Eigen::VectorXd gradient = score.Gradient(score.RowsOf(score.clusters[g]));
+    c.moves.col(g) = groups / (groups - 1.0) * c.inverse_hessian * gradient;
+  }
   return c;
 }
-
-namespace {
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kNormal95 = 1.959963984540054;
-constexpr double kMatters = 1e-6;  // of the variance
-
-double QuantileOf(double freedom) {
-  return std::isfinite(freedom) ? StudentQuantile95(freedom) : kNormal95;
-}
-
-double LeastFreedom(const Eigen::VectorXd& freedom, const Eigen::VectorXd& coefficients) {
-  double least = kInfinite;
-  for (Eigen::Index i = 0; i < coefficients.size(); ++i) {
-    if (coefficients[i] != 0.0) least = std::min(least, freedom[i]);
-  }
-  return least;
-}
-
-}  // namespace
 
 void Scatter::Add(const Eigen::MatrixXd& covariance, double freedom) {
   parts.push_back({covariance, Eigen::VectorXd::Constant(covariance.rows(), freedom)});
@@ -547,14 +469,21 @@ Eigen::MatrixXd Scatter::Covariance() const {
 }
 
 ScatterOf Scatter::Of(const Eigen::VectorXd& coefficients) const {
+  constexpr double kNormal95 = 1.959963984540054;
+  constexpr double kMatters = 1e-6;  // of the variance
+  const auto quantile = [](double freedom) {
+    return std::isfinite(freedom) ? StudentQuantile95(freedom) : kNormal95;
+  };
   std::vector<double> variances, freedoms;
   double sum = 0.0, squared_width = 0.0;
   for (const Part& part : parts) {
+    const Eigen::ArrayXd own =
+        (coefficients.array() != 0.0).select(part.freedom.array(), kInfinite);
     variances.push_back(std::max(0.0, coefficients.dot(part.covariance * coefficients)));
-    freedoms.push_back(LeastFreedom(part.freedom, coefficients));
-    const double quantile = QuantileOf(freedoms.back());
+    freedoms.push_back(own.minCoeff());
+    const double t = quantile(freedoms.back());
     sum += variances.back();
-    squared_width += quantile * quantile * variances.back();
+    squared_width += t * t * variances.back();
   }
   ScatterOf of;
   of.standard_error = std::sqrt(sum);
@@ -562,7 +491,7 @@ ScatterOf Scatter::Of(const Eigen::VectorXd& coefficients) const {
   for (size_t k = 0; k < parts.size(); ++k) {
     if (variances[k] >= kMatters * sum) of.freedom = std::min(of.freedom, freedoms[k]);
   }
-  of.quantile = sum > 0.0 ? std::sqrt(squared_width / sum) : QuantileOf(of.freedom);
+  of.quantile = sum > 0.0 ? std::sqrt(squared_width / sum) : quantile(of.freedom);
   return of;
 }
 

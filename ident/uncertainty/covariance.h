@@ -1,5 +1,5 @@
-// ident: whose errors are independent of each other, the clusters of standard errors, and the
-// covariance that they leave.
+// ident: clusters of standard errors (whose errors are independent of each other), how much the
+// recordings weigh, and the covariance that the clusters leave.
 //
 // A person's pushes are answered by the same body and habits: the independent unit is the person.
 // Where several people share a recording, errors go two ways: through the person into all of their
@@ -29,13 +29,11 @@ struct ResidualRows;
 struct Clusters {
   ClusterBy by = ClusterBy::kRecording;  // kAuto decided
   bool two_way = false;
-  int people = 0;                  // different ones
-  bool draws_people = false;       // every cluster is a person: errors are about people like them
-  std::vector<std::string> names;  // of the clusters: people or recordings
-  // Cluster of every [recording][person].
-  std::vector<std::vector<int>> of;
-  // Line-up of every recording; the recordings themselves where line-ups are too few.
-  std::vector<int> line_up;
+  int people = 0;                    // different ones
+  bool draws_people = false;         // every cluster is a person: errors are about people like them
+  std::vector<std::string> names;    // of the clusters: people or recordings
+  std::vector<std::vector<int>> of;  // cluster of every [recording][person]
+  std::vector<int> line_up;  // of every recording; the recordings themselves where they are too few
 
   int count() const { return static_cast<int>(names.size()); }
 };
@@ -48,24 +46,6 @@ Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterB
 inline constexpr int kFewClusters = 10;
 // From fewer people nothing is identified about people like them.
 inline constexpr int kFewestPeople = 4;
-
-// The covariance that clusters of rows leave, and how well it is itself known.
-//
-// With s_g = J_g' r_g the score of cluster g, H the Hessian of the cost at its minimum and
-// M_g = H^-1/2 J_g'J_g H^-1/2:
-//   CR2     V = sum over g of D_g D_g', D_g centred,  D_g = H^-1/2 (1 - M_g)^-1/2 H^-1/2 s_g
-//           (Bell & McCaffrey 2002; Pustejovsky & Tipton 2018, with the identity as working model)
-//   df_c    Satterthwaite's degrees of freedom of c'Vc: with p_g = (1 - P_gg)^-1/2 J_g H^-1 c and
-//           W_gh = p_g' (1 - P)_gh p_h,  P = J H^-1 J':  df = (sum W_gg)^2 / sum W_gh^2, at most
-//           G - 1, as centred D_g have
-// It assumes that clusters are independent and the rest of the model right on average. A
-// coefficient that leans on few of the clusters has few degrees of freedom, however many clusters
-// there are.
-//
-// Rejected, by the share of 95 % intervals that held the truth where recordings differ
-// (tests/studies/coverage_study.cc): J'J alone for H, which the robust loss makes too large (73 to
-// 88 %); the jackknife CR3 (96 to 98 %); the clusters' own second derivatives in M_g, which may
-// leave H - H_g nearly singular (98 to 100 %).
 
 // Clusters of rows; -1: in none.
 struct RowClusters {
@@ -86,47 +66,24 @@ struct Clustering {
 Clustering ClusterRows(const FitProblem& problem, const Clusters& clusters,
                        const ResidualRows& score);
 
-// J_g'J_g = F_g'F_g and s_g of every cluster that has rows, in the coordinates of `base`'s columns.
-// F_g has no more rows than J_g has columns that are not zero: few where units have columns of
-// their own.
-struct ClusterScores {
-  std::vector<Eigen::MatrixXd> factors;
-  Eigen::MatrixXd scores;  // a column for each
-};
-ClusterScores GatherScores(const ResidualRows& score, const RowClusters& clusters,
-                           const Eigen::MatrixXd& base);
-
-// hessian: of the cost, in the same coordinates. coefficients: rows c whose freedom is asked for.
-struct ClusteredCovariance {
-  Eigen::MatrixXd covariance;
-  Eigen::VectorXd freedom;  // of each coefficient; 1 to G - 1
-};
-ClusteredCovariance Cr2(const ClusterScores& scores, const Eigen::MatrixXd& hessian,
-                        const Eigen::MatrixXd& coefficients);
-
 // How much the recordings weigh against what was put in beside them.
 //
 // Sigmas. Each kind of residual (hip, velocity, angles, rates) is counted in its own robust scale:
 // with e its d components in one frame, s^2 = median |e|^2 / median of chi-squared with d degrees
-// of freedom. Markers are never more exact than their noise. Velocities, angles and rates are made
-// of the same markers as the hip's path and repeat much of what it says: they count for 0.3 of it,
-// that is their sigma is s / 0.3 (chosen on the folds of the 32 single-person recordings: hipADE
-// 0.090 m against 0.095 with all kinds alike; it leaves estimates of a right model unbiased).
+// of freedom, and at least the markers' noise. Velocities, angles and rates repeat much of what the
+// hip's path says: their sigma is s / kRateWeight (chosen on the folds of the 32 single-person
+// recordings: hipADE 0.090 m against 0.095 with all kinds alike; it leaves estimates of a right
+// model unbiased).
 //
 // Effective frames. The errors of one recording last, and its nine residuals a frame err together,
 // so the sum of their log densities is a composite likelihood: its maximum is right and its
-// curvature is not. It is scaled as Rotnitzky and Jewell (1990) scale it, so that curvature and
-// score variance agree on average (first-moment adjustment; Varin, Reid and Firth 2011, section 3):
-//
+// curvature is not. Data rows are divided by sqrt(lambda), so that curvature and score variance
+// agree on average (first-moment adjustment: Rotnitzky and Jewell 1990; Varin, Reid and Firth 2011,
+// section 3):
 //   lambda = tr(H^-1 V_s) / tr(H^-1 H_data),   V_s = sum over recordings g of A_g s_g (A_g s_g)'
-//
-// with A_g s_g the leverage-adjusted scores of CR2. Data rows are divided
-// by sqrt(lambda): then a frame counts as `weight` of an independent one. One factor for all leaves
-// an unpenalized optimum where it was, gives priors their true share, and lets exact data outweigh
-// any prior. Where sigmas are estimated no frame counts as more than one. It assumes that
-// recordings err independently of each other; that people do not is what the standard errors are
-// clustered for. Compared to the integrated autocorrelation time of the residuals, it also sees how
-// residuals of one frame go together, and how the robust loss counts.
+// with A_g s_g the leverage-adjusted scores of CR2. Where sigmas are estimated no frame counts as
+// more than one. It assumes that recordings err independently of each other; that people do not is
+// what the standard errors are clustered for.
 
 inline constexpr double kRateWeight = 0.3;
 
@@ -138,27 +95,7 @@ ResidualSigmas EstimateSigmas(const FitProblem& problem, const FitPoint& point);
 double EstimateEffectiveWeight(const FitProblem& problem, const FitPoint& point,
                                RecordingSums* recordings);
 
-// Covariances of a least-squares estimate from its residuals and Jacobian alone, whatever
-// model made them (the NIST reference sets go through here too).
-//
-// At the optimum, with H the Hessian of the cost, H = J'J + sum r d2r (the second term only where
-// it was computed, residual_rows.h):
-//   naive      (J'J)^-1 (sigma^2 J_d'J_d + J_b'J_b) (J'J)^-1, sigma^2 = |r_d|^2 / (N - rank): rows
-//   of data
-//              (d) taken as independent, priors and demands (b) in units of their own
-//   clustered  CR2 over clusters of rows. Where rows are clustered two ways,
-//              V_first + V_second - V_both. Deviations of pooled units are draws, and what they
-//              scatter is a second part, by their own prior's spread: H^-1 J_p'J_p H^-1. So is what
-//              a prior's centre scatters: where data say little the error is the prior's width,
-//              where they say all it is the sandwich, and where the data's scores scatter as their
-//              weight says it is the posterior's, H^-1. How parts go together: below.
-// What leaving a recording out would move: H^-1 s_g G / (G - 1), one step with the mean Hessian of
-// the rest. Against refits of the 32 single-person recordings it is off by 15 % (root mean square
-// over all moves); by H less the recording's own J_g'J_g by 39 %, less its second derivatives too
-// by 42 %, by J'J less J_g'J_g by 28 %. By singular values, on the subspace that the rows
-// determine; nothing is said of the rest.
-
-// What an estimate scatters by, in independent parts, and intervals of their sum.
+// An estimate scatters in independent parts, each known by its own degrees of freedom.
 //
 // The recordings' part is estimated from G clusters: it has at most G - 1 degrees of freedom,
 // whatever lies beside it. The parts of priors and demands are known. With V_k the variance of a
@@ -217,6 +154,31 @@ struct SingularDirections {
 SingularDirections Decompose(const Eigen::MatrixXd& jacobian,
                              double null_value = kNullSingularValue);
 
+// Covariances of a least-squares estimate from its residuals and Jacobian alone, whatever model
+// made them (the NIST reference sets go through here too). With s_g = J_g' r_g the score of cluster
+// g, H = J'J + sum r d2r the Hessian of the cost at its minimum (the second term only where it was
+// computed, residual_rows.h) and M_g = H^-1/2 J_g'J_g H^-1/2:
+//   naive   (J'J)^-1 (sigma^2 J_d'J_d + J_b'J_b) (J'J)^-1, sigma^2 = |r_d|^2 / (N - rank): rows of
+//           data (d) taken as independent, priors and demands (b) in units of their own
+//   CR2     V = sum over g of D_g D_g', D_g centred,  D_g = H^-1/2 (1 - M_g)^-1/2 H^-1/2 s_g
+//           (Bell & McCaffrey 2002; Pustejovsky & Tipton 2018, with the identity as working model)
+//   df_c    Satterthwaite's degrees of freedom of c'Vc: with p_g = (1 - P_gg)^-1/2 J_g H^-1 c and
+//           W_gh = p_g' (1 - P)_gh p_h,  P = J H^-1 J':  df = (sum W_gg)^2 / sum W_gh^2, at most
+//           G - 1, as centred D_g have: few for a coefficient that leans on few of the clusters
+//   parts   Deviations of pooled units are draws, and scatter by their own prior's spread:
+//           H^-1 J_p'J_p H^-1. So does a prior's centre: where data say little the error is the
+//           prior's width, where they say all it is the sandwich, and where the data's scores
+//           scatter as their weight says it is the posterior's, H^-1.
+//   moves   Leaving a recording out moves the estimate by H^-1 s_g G / (G - 1), one step with the
+//           mean Hessian of the rest. Against refits of the 32 single-person recordings it is off
+//           by 15 % (root mean square over all moves); by H less the recording's own J_g'J_g by
+//           39 %, less its second derivatives too by 42 %, by J'J less J_g'J_g by 28 %.
+// All by singular values, on the subspace that the rows determine; nothing is said of the rest. It
+// is assumed that clusters are independent and the rest of the model right on average. Rejected, by
+// the share of 95 % intervals that held the truth where recordings differ
+// (tests/studies/coverage_study.cc): J'J alone for H, which the robust loss makes too large (73 to
+// 88 %); the jackknife CR3 (96 to 98 %); the clusters' own second derivatives in M_g, which may
+// leave H - H_g nearly singular (98 to 100 %).
 struct Covariance {
   SingularDirections directions;  // of the scaled Jacobian
   int naive_freedom = 1;          // rows of data less the rank
@@ -245,10 +207,6 @@ struct Covariance {
 // scatter without clusters.
 Covariance ComputeCovariance(const ResidualRows& score, const Eigen::VectorXd& unit,
                              const Clustering& clustering, double null_value = kNullSingularValue);
-
-// The first of it alone: directions, sigma and what rows taken as independent scatter.
-Covariance NaiveCovariance(const ResidualRows& score, const Eigen::VectorXd& unit,
-                           double null_value = kNullSingularValue);
 
 // The sums of some rows, by the point that they were evaluated at.
 RecordingSums SumRows(const ResidualRows& score, const FitPoint& point,

@@ -75,14 +75,6 @@ double FindCrossing(const ProfileSearch& search, HeldFit below, HeldFit beyond, 
   return (below.value * high - beyond.value * low) / (high - low);
 }
 
-// rise: of the root, over the last step.
-double NextStep(const ProfileSearch& search, double step, double rise) {
-  const double aim = std::sqrt(2.0 * search.threshold);
-  const int steps = search.locate_crossing ? kStepsToThreshold : kStepsToClassify;
-  const double wanted = rise > 0.0 ? aim / steps * step / rise : kMaxGrowth * step;
-  return std::clamp(wanted, step / kMaxGrowth, kMaxGrowth * step);
-}
-
 }  // namespace
 
 ProfileSide TraceProfile(const ProfileSearch& search, int sign, const HoldFit& hold) {
@@ -121,7 +113,10 @@ ProfileSide TraceProfile(const ProfileSearch& search, int sign, const HoldFit& h
     const double reach = std::abs(fit.value - search.estimate) / half_width;
     if (at_limit || (reach > kFlatReach && root < kCrossingTolerance * aim)) return side;
     side.end = "steps";
-    step = NextStep(search, std::abs(fit.value - last.value), root - Root(search, last));
+    const double length = std::abs(fit.value - last.value), rise = root - Root(search, last);
+    const int steps = search.locate_crossing ? kStepsToThreshold : kStepsToClassify;
+    step = std::clamp(rise > 0.0 ? aim / steps * length / rise : kMaxGrowth * length,
+                      length / kMaxGrowth, kMaxGrowth * length);
     before = last;
     last = fit;
   }
@@ -131,17 +126,20 @@ ProfileSide TraceProfile(const ProfileSearch& search, int sign, const HoldFit& h
 namespace {
 
 // A number to be profiled: one fitted parameter on its fitted scale, or a combination of natural
-// values.
+// values. It is told as factor * natural value + offset; factors are positive.
 struct ProfileTarget {
   std::string name, unit;
   Transform transform = Transform::kIdentity;
   int index = -1;                      // of the parameter; -1 for a combination
   std::vector<double> coefficients{};  // of a combination, by fitted parameter
   double constant = 0.0;               // what fixed parameters contribute
+  double factor = 1.0, offset = 0.0;
 
+  double Told(double value) const {
+    return std::isfinite(value) ? factor * ToNatural(transform, value) + offset : factor * value;
+  }
   // Half-width over standard error; of a combination, that of its least known parameter.
-  double Quantile(const Uncertainty& uncertainty) const {
-    const std::vector<Estimate>& estimates = uncertainty.estimates;
+  double Quantile(const std::vector<Estimate>& estimates) const {
     if (index >= 0) return estimates[index].quantile;
     double quantile = 0.0;
     for (size_t i = 0; i < coefficients.size(); ++i) {
@@ -151,113 +149,51 @@ struct ProfileTarget {
   }
 };
 
-ProfileTarget CombinationTarget(const FitProblem& problem, const CombinationSpec& spec) {
+// Everything that moves. A combination of one parameter is that parameter on another scale.
+std::vector<ProfileTarget> AllTargets(const FitProblem& problem) {
   const ParameterMap& map = problem.map();
-  ProfileTarget target{spec.name, spec.unit};
-  target.coefficients.assign(map.fitted.size(), 0.0);
-  for (const Term& term : spec.terms) {
-    const size_t at = problem.FittedIndex(term.parameter);
-    if (at == map.fitted.size()) {
-      target.constant += term.coefficient * map.values[term.parameter];
-    } else {
-      target.coefficients[at] += term.coefficient;
-    }
+  std::vector<ProfileTarget> all;
+  for (size_t i = 0; i < map.fitted.size(); ++i) {
+    const ParameterSpec& spec = problem.Spec(i);
+    all.push_back({spec.name, spec.unit, spec.transform, static_cast<int>(i)});
   }
-  return target;
-}
-
-// A profile to report: a target's, or a linear function of it in natural values; factors are
-// positive.
-struct ReportedProfile {
-  std::string name, unit;
-  size_t target;
-  double factor = 1.0, offset = 0.0;
-};
-
-// Everything that moves, or what is named; each target once.
-class ProfilePlan {
- public:
-  explicit ProfilePlan(const FitProblem& problem) {
-    for (size_t i = 0; i < problem.map().fitted.size(); ++i) {
-      const ParameterSpec& spec = problem.Spec(i);
-      targets_.push_back({spec.name, spec.unit, spec.transform, static_cast<int>(i)});
-      all_.push_back({spec.name, spec.unit, i});
-    }
-    for (const CombinationSpec& spec : DerivedCombinations(problem.options().model)) {
-      Add(CombinationTarget(problem, spec));
-    }
-  }
-
-  // No names: all. Errors: a name of nothing that moves.
-  MaybeError Choose(const std::vector<std::string>& names) {
-    std::string known;
-    for (const ReportedProfile& r : all_) known += (known.empty() ? "" : ", ") + r.name;
-    for (const std::string& name : names) {
-      const auto at = std::find_if(all_.begin(), all_.end(),
-                                   [&name](const ReportedProfile& r) { return r.name == name; });
-      if (at == all_.end()) {
-        return Error{"there is no profile of '" + name + "'; free numbers are " + known};
+  for (const CombinationSpec& spec : DerivedCombinations(problem.options().model)) {
+    ProfileTarget target{spec.name, spec.unit};
+    std::vector<double>& c = target.coefficients;
+    c.assign(map.fitted.size(), 0.0);
+    for (const Term& term : spec.terms) {
+      const size_t at = problem.FittedIndex(term.parameter);
+      if (at == c.size()) {
+        target.constant += term.coefficient * map.values[term.parameter];
+      } else {
+        c[at] += term.coefficient;
       }
-      chosen_.push_back(*at);
     }
-    if (names.empty()) chosen_ = all_;
-    return std::nullopt;
-  }
-
-  const std::vector<ProfileTarget>& targets() const { return targets_; }
-  const std::vector<ReportedProfile>& chosen() const { return chosen_; }
-
-  // From its target's scale to natural values and its own name.
-  Profile Reported(const ReportedProfile& reported, Profile profile) const {
-    const Transform transform = targets_[reported.target].transform;
-    const auto natural = [&](double value) {
-      if (!std::isfinite(value)) return reported.factor * value;
-      return reported.factor * ToNatural(transform, value) + reported.offset;
-    };
-    profile.name = reported.name;
-    profile.unit = reported.unit;
-    profile.estimate = natural(profile.estimate);
-    profile.lower95 = natural(profile.lower95);
-    profile.upper95 = natural(profile.upper95);
-    for (ProfilePoint& point : profile.points) point.value = natural(point.value);
-    return profile;
-  }
-
- private:
-  void Add(const ProfileTarget& combination) {
-    const auto& c = combination.coefficients;
-    const auto moves = [](double coefficient) { return coefficient != 0.0; };
-    const auto first = std::find_if(c.begin(), c.end(), moves);
-    if (first == c.end()) return;
-    if (std::count_if(c.begin(), c.end(), moves) == 1) {
-      all_.push_back({combination.name, combination.unit, static_cast<size_t>(first - c.begin()),
-                      *first, combination.constant});
-      return;
+    const auto fixed = std::count(c.begin(), c.end(), 0.0);
+    if (fixed == static_cast<std::ptrdiff_t>(c.size())) continue;
+    if (fixed + 1 == static_cast<std::ptrdiff_t>(c.size())) {
+      const int one = static_cast<int>(
+          std::find_if(c.begin(), c.end(), [](double by) { return by != 0.0; }) - c.begin());
+      target = {spec.name, spec.unit, all[one].transform, one, {}, 0.0, c[one], target.constant};
     }
-    all_.push_back({combination.name, combination.unit, targets_.size()});
-    targets_.push_back(combination);
+    all.push_back(std::move(target));
   }
-
-  std::vector<ProfileTarget> targets_;
-  std::vector<ReportedProfile> all_, chosen_;
-};
+  return all;
+}
 
 constexpr double kHold = 0.03;  // s_hold over the naive error
 // Where a held fit ends: changes of the cost, over the threshold, well below what crossings are
-// located to; where only the class is wanted, more of them. And of the cost
-// itself, at most: a far threshold must not end fits that have hardly begun.
+// located to; where only the class is wanted, more of them. And of the cost itself, at most: a far
+// threshold must not end fits that have hardly begun.
 struct HoldTolerance {
   double of_threshold, of_cost;
 };
 constexpr HoldTolerance kToLocate = {1e-4, 1e-5}, kToClassify = {1e-3, 1e-4};
 
-// At the optimum without a demand that moved the fit, where its errors are told (uncertainty.h): at
-// the edge of a demand H says how little room is left, not what frames err.
-Covariance CovarianceAtFreeOptimum(FitProblem problem, const FitPoint& near,
-                                   const Covariance& otherwise) {
-  problem.set_settling_weight(0.0);
-  const SolveStart free = Refit(problem, near);
-  return free.usable ? CovarianceAt(problem, free.to) : otherwise;
+ProfileClass ClassOf(const ProfileSide& below, const ProfileSide& above) {
+  if (below.IsFlat() && above.IsFlat()) return ProfileClass::kStructurallyNot;
+  return below.Crosses() && above.Crosses() ? ProfileClass::kIdentifiable
+                                            : ProfileClass::kPracticallyNot;
 }
 
 class Profiler {
@@ -267,258 +203,243 @@ class Profiler {
         estimate_(estimate),
         uncertainty_(uncertainty),
         covariance_(CovarianceAt(problem, estimate)),
-        free_(uncertainty.settling.holds() ? CovarianceAtFreeOptimum(problem, estimate, covariance_)
-                                           : covariance_),
-        cost_(Refit(problem, estimate).cost) {}
+        free_(covariance_),
+        cost_(Refit(problem, estimate).cost) {
+    if (!uncertainty.settling.holds()) return;
+    // At the optimum without a demand that moved the fit, where its errors are told
+    // (uncertainty.h): at the edge of a demand H says how little room is left, not what frames err.
+    FitProblem undemanding = problem;
+    undemanding.mutable_options()->settling_weight = 0.0;
+    const SolveStart start = Refit(undemanding, estimate);
+    if (start.usable) free_ = CovarianceAt(undemanding, start.to);
+  }
 
   // In the target's own scale.
-  Profile Run(const ProfileTarget& target) const;
-  ProfileClass Classify(const ProfileTarget& target) const;
+  Profile Run(const ProfileTarget& target) const {
+    const ProfileSearch search = Search(target);
+    const ProfileSide below = Trace(target, search, -1), above = Trace(target, search, +1);
+    Profile profile;
+    profile.estimate = search.estimate;
+    profile.cost = search.cost;
+    profile.threshold = search.threshold;
+    profile.lower_end = below.end;
+    profile.upper_end = above.end;
+    profile.lower95 = below.crossing;
+    profile.upper95 = above.crossing;
+    profile.points.push_back(Describe(target, {true, search.estimate, search.cost, search.point}));
+    for (const ProfileSide* side : {&below, &above}) {
+      for (const HeldFit& fit : side->points) profile.points.push_back(Describe(target, fit));
+    }
+    std::sort(profile.points.begin(), profile.points.end(),
+              [](const ProfilePoint& a, const ProfilePoint& b) { return a.value < b.value; });
+    profile.classification =
+        IsNull(target) ? ProfileClass::kStructurallyNot : ClassOf(below, above);
+    if (profile.classification == ProfileClass::kStructurallyNot) {
+      profile.lower95 = -std::numeric_limits<double>::infinity();
+      profile.upper95 = std::numeric_limits<double>::infinity();
+    }
+    return profile;
+  }
+
+  ProfileClass Classify(const ProfileTarget& target) const {
+    if (IsNull(target)) return ProfileClass::kStructurallyNot;
+    ProfileSearch search = Search(target);
+    search.locate_crossing = false;
+    const ProfileSide below = Trace(target, search, -1);
+    if (!below.Crosses() && !below.IsFlat()) return ProfileClass::kPracticallyNot;
+    return ClassOf(below, Trace(target, search, +1));
+  }
 
  private:
-  ProfileSearch Search(const ProfileTarget& target, const Eigen::VectorXd& gradient) const;
-  ProfileSide Trace(const ProfileTarget& target, const ProfileSearch& search, int sign) const;
-  HeldFit Hold(const ProfileTarget& target, const ProfileSearch& search, double wanted,
-               const std::vector<double>& from) const;
   // Nothing but a prior holds it; its profile rises for that, and it is not identified.
   bool IsNull(const ProfileTarget& target) const {
     return target.index >= 0 &&
            uncertainty_.estimates[target.index].status == EstimateStatus::kUnidentifiable;
   }
-  double Value(const ProfileTarget& target, const FitPoint& point) const;
-  Eigen::VectorXd Gradient(const ProfileTarget& target) const;
-  double MeanRatio() const;
-  ProfilePoint Describe(const ProfileTarget& target, const HeldFit& fit) const;
+
+  double Value(const ProfileTarget& target, const FitPoint& point) const {
+    if (target.index >= 0) return point.shared[target.index];
+    double value = target.constant;
+    for (size_t i = 0; i < target.coefficients.size(); ++i) {
+      value += target.coefficients[i] * ToNatural(problem_.Spec(i).transform, point.shared[i]);
+    }
+    return value;
+  }
+
+  // The target's derivatives by all fitted numbers, at the estimate.
+  Eigen::VectorXd Gradient(const ProfileTarget& target) const {
+    const Eigen::Index size = covariance_.inverse_hessian.rows();
+    if (target.index >= 0) return Eigen::VectorXd::Unit(size, target.index);
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size);
+    for (size_t i = 0; i < target.coefficients.size(); ++i) {
+      const Transform transform = problem_.Spec(i).transform;
+      gradient[static_cast<Eigen::Index>(i)] =
+          target.coefficients[i] *
+          TransformSlope(transform, ToNatural(transform, estimate_.shared[i]));
+    }
+    return gradient;
+  }
+
+  // Clustered over naive variances, on average.
+  double MeanRatio() const {
+    double sum = 0.0;
+    int count = 0;
+    for (int i = 0; i < problem_.map().num_shared(); ++i) {
+      const double naive = free_.inverse_hessian(i, i);
+      if (naive <= 0.0) continue;
+      sum += uncertainty_.covariance(i, i) / naive;
+      ++count;
+    }
+    return count > 0 ? sum / count : free_.sigma * free_.sigma;
+  }
+
+  ProfileSearch Search(const ProfileTarget& target) const {
+    const Eigen::VectorXd gradient = Gradient(target);
+    const Eigen::VectorXd moved = covariance_.inverse_hessian * gradient;
+    const double naive = gradient.dot(moved);
+    // A result keeps no covariance of a network's weights, which stand last and are in no target.
+    const Eigen::VectorXd kept = gradient.head(uncertainty_.covariance.rows());
+    const double clustered = kept.dot(uncertainty_.covariance * kept);
+    ProfileSearch search;
+    search.estimate = Value(target, estimate_);
+    search.cost = cost_;
+    search.point = estimate_.Flat();
+    search.direction.assign(search.point.size(), 0.0);
+    if (target.index >= 0) {
+      const ParameterSpec& spec = problem_.Spec(target.index);
+      search.lower = ToFitted(spec.transform, spec.lower);
+      search.upper = ToFitted(spec.transform, spec.upper);
+    }
+    const bool known = naive > 0.0 && clustered > 0.0;
+    if (known) {
+      Eigen::VectorXd::Map(search.direction.data(), moved.size()) = moved / naive;
+      search.naive_error = std::sqrt(naive);
+    } else if (target.index >= 0) {  // a careful first step
+      search.direction[target.index] = 1.0;
+      search.naive_error =
+          0.1 *
+          (target.transform == Transform::kIdentity ? problem_.Spec(target.index).scale : 1.0);
+    }
+    const double t = target.Quantile(uncertainty_.estimates);
+    const double by_frames = gradient.dot(free_.inverse_hessian * gradient);
+    search.threshold =
+        0.5 * t * t * (known && by_frames > 0.0 ? clustered / by_frames : MeanRatio());
+    return search;
+  }
+
+  ProfileSide Trace(const ProfileTarget& target, const ProfileSearch& search, int sign) const {
+    return TraceProfile(search, sign, [&](double wanted, const std::vector<double>& from) {
+      return Hold(target, search, wanted, from);
+    });
+  }
+
+  HeldFit Hold(const ProfileTarget& target, const ProfileSearch& search, double wanted,
+               const std::vector<double>& from) const {
+    const double sigma = kHold * search.naive_error;
+    FitPoint point = estimate_;
+    point.SetFlat(from);
+    // Where a rollout fails, so does the solve: no need to look for them first. With recordings cut
+    // short costs could not be compared.
+    FitProblem::Built built = problem_.Build(&point, 0, false, 1, true);
+    HeldFit held;
+    if (!built.shortened.empty() || built.rests_left_out > 0) return held;
+    std::unique_ptr<ceres::CostFunction> holder;
+    if (target.index >= 0) {
+      holder =
+          std::make_unique<PriorResidual>(problem_.map().num_shared(), target.index, wanted, sigma);
+    } else {
+      holder = std::make_unique<CombinationResidual>(problem_.map(), target.coefficients,
+                                                     target.constant, wanted, sigma);
+    }
+    built.Add(std::move(holder), {point.shared.data()}, FitProblem::kPriorCluster);
+    ceres::Solver::Options options = SolverOptions(problem_.options(), *built.problem);
+    if (cost_ > 0.0) {
+      const HoldTolerance& enough = search.locate_crossing ? kToLocate : kToClassify;
+      options.function_tolerance =
+          std::max(options.function_tolerance,
+                   std::min(enough.of_cost, enough.of_threshold * search.threshold / cost_));
+    }
+    std::string message;
+    const SolveStage stage =
+        SolveBuilt(&built, options, 0, &message, StructuredSecants(true, free_.curvature));
+    held.value = Value(target, point);
+    const double pull = (held.value - wanted) / sigma;
+    held.cost = stage.final_cost - 0.5 * pull * pull;
+    held.point = point.Flat();
+    held.ok = stage.converged;
+    return held;
+  }
+
+  ProfilePoint Describe(const ProfileTarget& target, const HeldFit& fit) const {
+    ProfilePoint point{fit.value, fit.cost, {}};
+    for (int i = 0; i < problem_.map().num_shared(); ++i) {
+      if (i == target.index) continue;
+      const ParameterSpec& spec = problem_.Spec(i);
+      point.others[spec.name] = ToNatural(spec.transform, fit.point[i]);
+    }
+    return point;
+  }
 
   const FitProblem& problem_;
   const FitPoint& estimate_;
   const Uncertainty& uncertainty_;
   const Covariance covariance_;
-  const Covariance free_;
+  Covariance free_;
   const double cost_;
 };
-
-double Profiler::Value(const ProfileTarget& target, const FitPoint& point) const {
-  if (target.index >= 0) return point.shared[target.index];
-  double value = target.constant;
-  for (size_t i = 0; i < target.coefficients.size(); ++i) {
-    const Transform transform = problem_.map().fitted[i].transform;
-    value += target.coefficients[i] * ToNatural(transform, point.shared[i]);
-  }
-  return value;
-}
-
-// The target's derivatives by all fitted numbers, at the estimate.
-Eigen::VectorXd Profiler::Gradient(const ProfileTarget& target) const {
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(covariance_.inverse_hessian.rows());
-  if (target.index >= 0) {
-    gradient[target.index] = 1.0;
-    return gradient;
-  }
-  for (size_t i = 0; i < target.coefficients.size(); ++i) {
-    const Transform transform = problem_.map().fitted[i].transform;
-    gradient[static_cast<Eigen::Index>(i)] =
-        target.coefficients[i] *
-        TransformSlope(transform, ToNatural(transform, estimate_.shared[i]));
-  }
-  return gradient;
-}
-
-double Profiler::MeanRatio() const {
-  double sum = 0.0;
-  int count = 0;
-  for (int i = 0; i < problem_.map().num_shared(); ++i) {
-    const double naive = free_.inverse_hessian(i, i);
-    if (naive <= 0.0) continue;
-    sum += uncertainty_.covariance(i, i) / naive;
-    ++count;
-  }
-  return count > 0 ? sum / count : free_.sigma * free_.sigma;
-}
-
-ProfileSearch Profiler::Search(const ProfileTarget& target, const Eigen::VectorXd& gradient) const {
-  const Eigen::VectorXd moved = covariance_.inverse_hessian * gradient;
-  const double naive = gradient.dot(moved);
-  // A result keeps no covariance of a network's weights, which stand last and are in no target.
-  const Eigen::VectorXd kept = gradient.head(uncertainty_.covariance.rows());
-  const double clustered = kept.dot(uncertainty_.covariance * kept);
-  ProfileSearch search;
-  search.estimate = Value(target, estimate_);
-  search.cost = cost_;
-  search.point = estimate_.Flat();
-  search.direction.assign(search.point.size(), 0.0);
-  const bool known = naive > 0.0 && clustered > 0.0;
-  if (known) {
-    const Eigen::VectorXd direction = moved / naive;
-    search.direction.assign(direction.data(), direction.data() + direction.size());
-    search.naive_error = std::sqrt(naive);
-  } else if (target.index >= 0) {
-    const ParameterSpec& spec = problem_.Spec(target.index);
-    search.direction[target.index] = 1.0;
-    search.naive_error =
-        0.1 * (spec.transform == Transform::kIdentity ? spec.scale : 1.0);  // a careful first step
-  }
-  const double t = target.Quantile(uncertainty_);
-  const double by_frames = gradient.dot(free_.inverse_hessian * gradient);
-  search.threshold = 0.5 * t * t * (known && by_frames > 0.0 ? clustered / by_frames : MeanRatio());
-  if (target.index >= 0) {
-    const ParameterSpec& spec = problem_.Spec(target.index);
-    search.lower = ToFitted(spec.transform, spec.lower);
-    search.upper = ToFitted(spec.transform, spec.upper);
-  }
-  return search;
-}
-
-ProfileSide Profiler::Trace(const ProfileTarget& target, const ProfileSearch& search,
-                            int sign) const {
-  return TraceProfile(search, sign, [&](double wanted, const std::vector<double>& from) {
-    return Hold(target, search, wanted, from);
-  });
-}
-
-HeldFit Profiler::Hold(const ProfileTarget& target, const ProfileSearch& search, double wanted,
-                       const std::vector<double>& from) const {
-  const double sigma = kHold * search.naive_error;
-  FitPoint point = estimate_;
-  point.SetFlat(from);
-  // Where a rollout fails, so does the solve: no need to look for them first. With recordings cut
-  // short costs could not be compared.
-  FitProblem::Built built = problem_.Build(&point, 0, false, 1, true);
-  HeldFit held;
-  if (!built.shortened.empty() || built.rests_left_out > 0) return held;
-  ceres::CostFunction* holder;
-  if (target.index >= 0) {
-    holder = new PriorResidual(problem_.map().num_shared(), target.index, wanted, sigma);
-  } else {
-    holder = new CombinationResidual(problem_.map(), target.coefficients, target.constant, wanted,
-                                     sigma);
-  }
-  built.problem->AddResidualBlock(holder, nullptr, point.shared.data());
-  ceres::Solver::Options options = SolverOptions(problem_.options(), *built.problem);
-  if (cost_ > 0.0) {
-    const HoldTolerance& enough = search.locate_crossing ? kToLocate : kToClassify;
-    options.function_tolerance =
-        std::max(options.function_tolerance,
-                 std::min(enough.of_cost, enough.of_threshold * search.threshold / cost_));
-  }
-  std::string message;
-  const SolveStage stage =
-      SolveBuilt(&built, options, 0, &message, StructuredSecants(true, free_.curvature));
-  held.value = Value(target, point);
-  const double pull = (held.value - wanted) / sigma;
-  held.cost = stage.final_cost - 0.5 * pull * pull;
-  held.point = point.Flat();
-  held.ok = stage.converged;
-  return held;
-}
-
-ProfilePoint Profiler::Describe(const ProfileTarget& target, const HeldFit& fit) const {
-  ProfilePoint point;
-  point.value = fit.value;
-  point.cost = fit.cost;
-  for (int i = 0; i < problem_.map().num_shared(); ++i) {
-    if (i == target.index) continue;
-    const ParameterSpec& spec = problem_.Spec(i);
-    point.others[spec.name] = ToNatural(spec.transform, fit.point[i]);
-  }
-  return point;
-}
-
-ProfileClass ClassOf(const ProfileSide& below, const ProfileSide& above) {
-  if (below.IsFlat() && above.IsFlat()) return ProfileClass::kStructurallyNot;
-  return below.Crosses() && above.Crosses() ? ProfileClass::kIdentifiable
-                                            : ProfileClass::kPracticallyNot;
-}
-
-Profile Profiler::Run(const ProfileTarget& target) const {
-  const ProfileSearch search = Search(target, Gradient(target));
-  const ProfileSide below = Trace(target, search, -1);
-  const ProfileSide above = Trace(target, search, +1);
-
-  Profile profile;
-  profile.name = target.name;
-  profile.unit = target.unit;
-  profile.estimate = search.estimate;
-  profile.cost = search.cost;
-  profile.threshold = search.threshold;
-  profile.lower_end = below.end;
-  profile.upper_end = above.end;
-  profile.lower95 = below.crossing;
-  profile.upper95 = above.crossing;
-  profile.points.push_back(Describe(target, {true, search.estimate, search.cost, search.point}));
-  for (const ProfileSide* side : {&below, &above}) {
-    for (const HeldFit& fit : side->points) profile.points.push_back(Describe(target, fit));
-  }
-  std::sort(profile.points.begin(), profile.points.end(),
-            [](const ProfilePoint& a, const ProfilePoint& b) { return a.value < b.value; });
-
-  profile.classification = IsNull(target) ? ProfileClass::kStructurallyNot : ClassOf(below, above);
-  if (profile.classification == ProfileClass::kStructurallyNot) {
-    profile.lower95 = -std::numeric_limits<double>::infinity();
-    profile.upper95 = std::numeric_limits<double>::infinity();
-  }
-  return profile;
-}
-
-ProfileClass Profiler::Classify(const ProfileTarget& target) const {
-  if (IsNull(target)) return ProfileClass::kStructurallyNot;
-  ProfileSearch search = Search(target, Gradient(target));
-  search.locate_crossing = false;
-  const ProfileSide below = Trace(target, search, -1);
-  if (!below.Crosses() && !below.IsFlat()) return ProfileClass::kPracticallyNot;
-  return ClassOf(below, Trace(target, search, +1));
-}
-
-// One value of each target that is asked for, in any order.
-template <typename Value>
-std::vector<Value> ForTargets(const ProfilePlan& plan, int num_threads, const JobProgress& progress,
-                              const std::function<Value(const ProfileTarget&)>& of) {
-  std::vector<size_t> needed;
-  for (const ReportedProfile& reported : plan.chosen()) {
-    if (std::find(needed.begin(), needed.end(), reported.target) == needed.end()) {
-      needed.push_back(reported.target);
-    }
-  }
-  std::vector<Value> values(plan.targets().size());
-  ParallelFor(
-      static_cast<int>(needed.size()), num_threads,
-      [&](int i) { values[needed[i]] = of(plan.targets()[needed[i]]); }, progress);
-  return values;
-}
 
 }  // namespace
 
 Result<std::vector<Profile>> ComputeProfiles(const FitProblem& problem, const FitPoint& estimate,
                                              const Uncertainty& uncertainty,
                                              const std::vector<std::string>& names, int num_threads,
-                                             const JobProgress& progress) {
-  ProfilePlan plan(problem);
-  if (MaybeError error = plan.Choose(names)) return *error;
+                                             const JobProgress& progress, bool classes_alone) {
+  const std::vector<ProfileTarget> all = AllTargets(problem);
+  std::vector<ProfileTarget> chosen;
+  for (const std::string& name : names) {
+    const auto at = std::find_if(all.begin(), all.end(),
+                                 [&name](const ProfileTarget& one) { return one.name == name; });
+    if (at == all.end()) {
+      std::vector<std::string> known;
+      for (const ProfileTarget& one : all) known.push_back(one.name);
+      return Error{"there is no profile of '" + name + "'; free numbers are " + Joined(known)};
+    }
+    chosen.push_back(*at);
+  }
+  if (names.empty()) chosen = all;
+  // Each parameter once, whatever scales it is told on.
+  const auto key = [](const ProfileTarget& target) {
+    return std::pair(target.index, target.index < 0 ? target.name : "");
+  };
+  std::map<std::pair<int, std::string>, Profile> traced;
+  std::vector<const ProfileTarget*> needed;
+  for (const ProfileTarget& target : chosen) {
+    if (traced.try_emplace(key(target)).second) needed.push_back(&target);
+  }
   const Profiler profiler(problem, estimate, uncertainty);
-  const std::vector<Profile> traced =
-      ForTargets<Profile>(plan, num_threads, progress,
-                          [&](const ProfileTarget& target) { return profiler.Run(target); });
+  ParallelFor(
+      static_cast<int>(needed.size()), num_threads,
+      [&](int i) {
+        const ProfileTarget& target = *needed[i];
+        Profile& profile = traced.at(key(target));
+        if (classes_alone) {
+          profile.classification = profiler.Classify(target);
+        } else {
+          profile = profiler.Run(target);
+        }
+      },
+      progress);
   std::vector<Profile> profiles;
-  for (const ReportedProfile& reported : plan.chosen()) {
-    profiles.push_back(plan.Reported(reported, traced[reported.target]));
+  for (const ProfileTarget& target : chosen) {
+    Profile& profile = profiles.emplace_back(traced.at(key(target)));
+    profile.name = target.name;
+    profile.unit = target.unit;
+    for (double* value : {&profile.estimate, &profile.lower95, &profile.upper95}) {
+      *value = target.Told(*value);
+    }
+    for (ProfilePoint& point : profile.points) point.value = target.Told(point.value);
   }
   return profiles;
-}
-
-Result<std::vector<ProfileClass>> ClassifyProfiles(const FitProblem& problem,
-                                                   const FitPoint& estimate,
-                                                   const Uncertainty& uncertainty,
-                                                   const std::vector<std::string>& names,
-                                                   int num_threads, const JobProgress& progress) {
-  ProfilePlan plan(problem);
-  if (MaybeError error = plan.Choose(names)) return *error;
-  const Profiler profiler(problem, estimate, uncertainty);
-  const std::vector<ProfileClass> traced = ForTargets<ProfileClass>(
-      plan, num_threads, progress,
-      [&](const ProfileTarget& target) { return profiler.Classify(target); });
-  std::vector<ProfileClass> classes;
-  for (const ReportedProfile& reported : plan.chosen()) classes.push_back(traced[reported.target]);
-  return classes;
 }
 
 }  // namespace pushid

@@ -68,19 +68,16 @@ struct Profile {
 
 // Profiles of the named parameters and derived combinations, or of all that move (empty names).
 // Combinations of a single free parameter are that parameter's profile on another scale. Errors:
-// names that are neither a free parameter nor a combination of one.
+// names that are neither a free parameter nor a combination of one. classes_alone: nothing but
+// names and classes, at less than half of the cost: where exactly a threshold is crossed does not
+// matter to them, nor does the second side where the first says enough.
 Result<std::vector<Profile>> ComputeProfiles(const FitProblem& problem, const FitPoint& estimate,
                                              const Uncertainty& uncertainty,
                                              const std::vector<std::string>& names, int num_threads,
-                                             const JobProgress& progress = nullptr);
+                                             const JobProgress& progress = nullptr,
+                                             bool classes_alone = false);
 
-// The classes alone, in the same order, at less than half of the cost: where exactly a threshold is
-// crossed does not matter to them, nor does the second side where the first says enough.
-Result<std::vector<ProfileClass>> ClassifyProfiles(
-    const FitProblem& problem, const FitPoint& estimate, const Uncertainty& uncertainty,
-    const std::vector<std::string>& names, int num_threads, const JobProgress& progress = nullptr);
-
-// What follows knows nothing of people: any number of any least-squares problem can be profiled.
+// Profiles of any number of any least-squares problem.
 
 // The best fit found with the number held near `wanted`.
 struct HeldFit {

@@ -11,7 +11,6 @@
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/residual_rows.h"
 #include "ident/uncertainty/assumptions.h"
-#include "ident/uncertainty/model_verdict.h"
 #include "models/decompositions.h"
 #include "models/enum_names.h"
 #include "models/self_terms.h"
@@ -57,41 +56,7 @@ std::vector<Combination> IdentifiedPairs(const FitProblem& problem, const FitPoi
   return found;
 }
 
-NullDirection NoEffect(const FitProblem& problem, int parameter) {
-  NullDirection direction;
-  direction.parameters = {problem.Spec(parameter).name};
-  direction.coefficients = {1.0};
-  direction.sentence =
-      direction.parameters[0] +
-      " has no effect on these recordings: fix it (--fix=" + direction.parameters[0] + ")";
-  return direction;
-}
-
-NullDirection Inseparable(const FitProblem& problem, const FitPoint& point,
-                          const std::vector<int>& group, const Eigen::MatrixXd& null_space,
-                          const Uncertainty& uncertainty) {
-  const Eigen::MatrixXd projector = null_space * null_space.transpose();
-  NullDirection joint;
-  int largest = group[0];
-  for (int i : group) {
-    if (projector(i, i) > projector(largest, largest)) largest = i;
-  }
-  for (int i : group) {
-    joint.parameters.push_back(problem.Spec(i).name);
-    joint.coefficients.push_back(projector(i, largest) / projector(largest, largest));
-  }
-  joint.identified = IdentifiedPairs(problem, point, group, null_space, uncertainty);
-  joint.sentence = Listed(joint.parameters, "and") + " cannot be separated";
-  for (const Combination& c : joint.identified) {
-    const double width = problem.Spec(largest).scale;
-    const bool known = IsNarrow(Transform::kIdentity, width, c.lower95, c.upper95);
-    joint.sentence += "; " + c.name + " = " + Format(c.value) + " +- " + Format(c.standard_error) +
-                      " " + c.unit + (known ? " is identified" : " is only weakly identified");
-  }
-  return joint;
-}
-
-// Which parameters the data cannot tell apart, and which sums of them they can. null_space: columns
+// Parameters that the data cannot tell apart, and sums of them that they can. null_space: columns
 // over all fitted numbers, in units of each one's scale. `uncertainty` needs its covariance and
 // quantile only.
 std::vector<NullDirection> DescribeNullSpace(const FitProblem& problem, const FitPoint& point,
@@ -99,15 +64,13 @@ std::vector<NullDirection> DescribeNullSpace(const FitProblem& problem, const Fi
                                              const Uncertainty& uncertainty) {
   std::vector<NullDirection> directions;
   if (null_space.cols() == 0) return directions;
-  const auto& fitted = problem.map().fitted;
-
-  // Parameters belong together when one's share of the null space moves the other.
   const Eigen::MatrixXd projector = null_space * null_space.transpose();
   std::vector<int> touched;
-  for (int i = 0; i < static_cast<int>(fitted.size()); ++i) {
+  for (int i = 0; i < problem.map().num_shared(); ++i) {
     if (null_space.row(i).cwiseAbs().maxCoeff() > kTouched) touched.push_back(i);
   }
   while (!touched.empty()) {
+    // Parameters belong together when one's share of the null space moves the other.
     std::vector<int> group = {touched[0]};
     const auto in_group = [&group](int i) {
       return std::find(group.begin(), group.end(), i) != group.end();
@@ -119,9 +82,29 @@ std::vector<NullDirection> DescribeNullSpace(const FitProblem& problem, const Fi
     }
     touched.erase(std::remove_if(touched.begin(), touched.end(), in_group), touched.end());
     std::sort(group.begin(), group.end());
-    directions.push_back(group.size() == 1
-                             ? NoEffect(problem, group[0])
-                             : Inseparable(problem, point, group, null_space, uncertainty));
+    NullDirection& joint = directions.emplace_back();
+    int largest = group[0];
+    for (int i : group) {
+      if (projector(i, i) > projector(largest, largest)) largest = i;
+    }
+    for (int i : group) {
+      joint.parameters.push_back(problem.Spec(i).name);
+      joint.coefficients.push_back(projector(i, largest) / projector(largest, largest));
+    }
+    if (group.size() == 1) {
+      const std::string& name = joint.parameters[0];
+      joint.sentence = name + " has no effect on these recordings: fix it (--fix=" + name + ")";
+      continue;
+    }
+    joint.identified = IdentifiedPairs(problem, point, group, null_space, uncertainty);
+    joint.sentence = Listed(joint.parameters, "and") + " cannot be separated";
+    for (const Combination& c : joint.identified) {
+      const double width = problem.Spec(largest).scale;
+      const bool known = IsNarrow(Transform::kIdentity, width, c.lower95, c.upper95);
+      joint.sentence += "; " + c.name + " = " + Format(c.value) + " +- " +
+                        Format(c.standard_error) + " " + c.unit +
+                        (known ? " is identified" : " is only weakly identified");
+    }
   }
   return directions;
 }
@@ -141,32 +124,29 @@ Eigen::MatrixXd Marginal(const Eigen::MatrixXd& information, const std::vector<i
 // change: of each kept parameter along the direction, natural units.
 std::string Sentence(const std::vector<const ParameterSpec*>& specs, const Eigen::VectorXd& change,
                      double share) {
-  Eigen::VectorXd size(change.size());
-  for (Eigen::Index i = 0; i < size.size(); ++i) {
-    size[i] = std::abs(change[i]) / specs[static_cast<size_t>(i)]->scale;
+  std::vector<double> size;
+  for (size_t i = 0; i < specs.size(); ++i) {
+    size.push_back(std::abs(change[static_cast<Eigen::Index>(i)]) / specs[i]->scale);
   }
-  std::vector<Eigen::Index> order;
-  for (Eigen::Index i = 0; i < size.size(); ++i) {
-    if (size[i] >= kPartOf * size.maxCoeff()) order.push_back(i);
+  const double largest = *std::max_element(size.begin(), size.end());
+  std::vector<size_t> order;
+  for (size_t i = 0; i < size.size(); ++i) {
+    if (size[i] >= kPartOf * largest) order.push_back(i);
   }
   std::sort(order.begin(), order.end(), [&size](auto a, auto b) { return size[a] > size[b]; });
-  const std::string percent = Rounded(std::round(100.0 * share), 3) + " %";
-  const ParameterSpec& first = *specs[static_cast<size_t>(order[0])];
-  if (order.size() == 1) {
-    return "the data alone hardly determine " + first.name + " (their share: " + percent + ")";
-  }
-  if (order.size() == 2) {
-    const ParameterSpec& second = *specs[static_cast<size_t>(order[1])];
-    const double slope = change[order[0]] / change[order[1]];
-    return "the data alone determine " + first.name + (slope > 0.0 ? " - " : " + ") +
-           Rounded(std::abs(slope), 2) + " " + second.name +
-           " better than either parameter; their split comes from priors or constraints (data: " +
-           percent + ")";
-  }
   std::vector<std::string> names;
-  for (Eigen::Index i : order) names.push_back(specs[static_cast<size_t>(i)]->name);
-  return "the data alone hardly separate " + Listed(names, "and") +
-         "; their split comes from priors or constraints (data: " + percent + ")";
+  for (size_t i : order) names.push_back(specs[i]->name);
+  const std::string percent = Rounded(std::round(100.0 * share), 3) + " %";
+  if (names.size() == 1) {
+    return "the data alone hardly determine " + names[0] + " (their share: " + percent + ")";
+  }
+  const std::string split =
+      "; their split comes from priors or constraints (data: " + percent + ")";
+  if (names.size() > 2) return "the data alone hardly separate " + Listed(names, "and") + split;
+  const double slope =
+      change[static_cast<Eigen::Index>(order[0])] / change[static_cast<Eigen::Index>(order[1])];
+  return "the data alone determine " + names[0] + (slope > 0.0 ? " - " : " + ") +
+         Rounded(std::abs(slope), 2) + " " + names[1] + " better than either parameter" + split;
 }
 
 // Directions that the data hardly know, one sentence for each: where priors and demands decide.
@@ -174,28 +154,23 @@ std::string Sentence(const std::vector<const ParameterSpec*>& specs, const Eigen
 // H = H_data + H_put_in over the shared parameters (deviations of units integrated out). The
 // eigenvalues of H^-1/2 H_data H^-1/2 are the data's shares, direction by direction; along one
 // whose share is below 50 % the estimate is what was put in. Where two parameters make most of it,
-// the data still know a combination of the two. at_bound: columns that do not move.
-std::vector<std::string> HeldDirections(const FitProblem& problem, const FitPoint& point,
-                                        const Covariance& covariance,
-                                        const std::vector<bool>& at_bound) {
-  const auto& fitted = problem.map().fitted;
+// the data still know a combination of the two.
+std::vector<std::string> HeldDirections(const FitProblem& problem,
+                                        const std::vector<FittedColumn>& columns,
+                                        const Covariance& covariance) {
   std::vector<int> kept, rest;
   std::vector<const ParameterSpec*> specs;
-  Eigen::VectorXd slope(0);
-  for (int i = 0; i < covariance.by_data.rows(); ++i) {
-    const bool shared = i < static_cast<int>(fitted.size());
-    if (at_bound[static_cast<size_t>(i)]) continue;
-    if (!shared) {
-      rest.push_back(i);
-      continue;
-    }
-    kept.push_back(i);
-    const ParameterSpec& spec = problem.Spec(i);
-    specs.push_back(&spec);
-    slope.conservativeResize(slope.size() + 1);
-    slope[slope.size() - 1] =
-        TransformSlope(spec.transform, ToNatural(spec.transform, point.shared[i]));
+  std::vector<double> slopes;
+  for (int i = 0; i < static_cast<int>(columns.size()); ++i) {
+    const FittedColumn& c = columns[i];
+    if (c.at_bound) continue;
+    const bool shared = i < problem.map().num_shared();
+    (shared ? kept : rest).push_back(i);
+    if (!shared) continue;
+    specs.push_back(&problem.Spec(i));
+    slopes.push_back(TransformSlope(c.transform, c.natural));
   }
+  const auto slope = Eigen::VectorXd::Map(slopes.data(), static_cast<Eigen::Index>(slopes.size()));
   std::vector<std::string> sentences;
   if (kept.empty()) return sentences;
   const Eigen::MatrixXd by_data = covariance.by_data + covariance.by_pooling;
@@ -227,20 +202,15 @@ Eigen::MatrixXd DataNullSpace(const ResidualRows& score, const Eigen::MatrixXd& 
     return cluster != FitProblem::kPriorCluster && cluster != FitProblem::kSettlingCluster;
   });
   const SingularDirections data = Decompose(scaled(rows, Eigen::all));
-  const int size = static_cast<int>(columns.size());
-  Eigen::MatrixXd null_space(size, 0);
-  for (int k = data.rank; k < size; ++k) {
-    const Eigen::VectorXd direction = data.v.col(k);
-    // Parameters on a bound make columns of zeros: those are not news.
-    double off_bound = 0.0;
-    for (int i = 0; i < size; ++i) {
-      if (!columns[i].at_bound) off_bound = std::max(off_bound, std::abs(direction[i]));
-    }
-    if (off_bound < kTouched) continue;
-    null_space.conservativeResize(size, null_space.cols() + 1);
-    null_space.rightCols(1) = direction;
+  // Parameters on a bound make columns of zeros: those are not news.
+  std::vector<int> off_bound, news;
+  for (size_t i = 0; i < columns.size(); ++i) {
+    if (!columns[i].at_bound) off_bound.push_back(static_cast<int>(i));
   }
-  return null_space;
+  for (int k = data.rank; k < data.v.cols(); ++k) {
+    if ((data.v(off_bound, k).array().abs() >= kTouched).any()) news.push_back(k);
+  }
+  return data.v(Eigen::all, news);
 }
 
 // Limits of EstimateStatus.
@@ -278,36 +248,34 @@ Interval WidenedTo(const Interval& least, Interval interval) {
 
 namespace {
 
-// few: too few recordings to know their scatter, or people to say anything of others.
-EstimateStatus Judge(const FittedColumn& c, const Estimate& e, bool touched, bool few) {
-  if (c.at_bound) return EstimateStatus::kAtBound;
-  if (touched) return EstimateStatus::kUnidentifiable;
-  if (e.shares.data < kHeldShare) return EstimateStatus::kPriorHeld;
-  return !few && Leads(e) && IsNarrow(c.transform, c.width, e.lower95, e.upper95)
-             ? EstimateStatus::kIdentified
-             : EstimateStatus::kWeak;
-}
-
+// touched: by a null direction of the data. few: too few recordings to know their scatter, or
+// people to say anything of others.
 Estimate MakeEstimate(const FittedColumn& c, ScatterOf of, double naive_variance,
                       const Shares& shares, bool touched, bool few) {
   if (touched) of.standard_error = kInfinity;
+  const double slope = TransformSlope(c.transform, c.natural);
+  const Interval interval = IntervalOf(c, of);
   Estimate e;
-  e.freedom = of.freedom;
-  e.quantile = of.quantile;
-  e.shares = shares;
   e.name = c.name;
   e.unit = c.unit;
   e.value = c.natural;
-  const double slope = TransformSlope(c.transform, c.natural);
+  e.freedom = of.freedom;
+  e.quantile = of.quantile;
+  e.shares = shares;
   e.shares.prior_pull *= slope;
   e.shares.settling_pull *= slope;
-  e.standard_error_naive = touched ? kInfinity : slope * std::sqrt(std::max(0.0, naive_variance));
-  if (c.at_bound) e.standard_error_naive = 0.0;
-  const Interval interval = IntervalOf(c, of);
+  e.standard_error_naive = c.at_bound ? 0.0
+                           : touched  ? kInfinity
+                                      : slope * std::sqrt(std::max(0.0, naive_variance));
   e.standard_error = interval.standard_error;
   e.lower95 = interval.lower;
   e.upper95 = interval.upper;
-  e.status = Judge(c, e, touched, few);
+  const bool identified = !few && Leads(e) && IsNarrow(c.transform, c.width, e.lower95, e.upper95);
+  e.status = c.at_bound                   ? EstimateStatus::kAtBound
+             : touched                    ? EstimateStatus::kUnidentifiable
+             : e.shares.data < kHeldShare ? EstimateStatus::kPriorHeld
+             : identified                 ? EstimateStatus::kIdentified
+                                          : EstimateStatus::kWeak;
   return e;
 }
 
@@ -347,7 +315,7 @@ std::vector<Shares> SharesOf(const Covariance& c, const Eigen::VectorXd& settlin
   return shares;
 }
 
-// What the demand to settle moved each column by, fitted scale.
+// Moves of each column by the demand to settle, fitted scale.
 Eigen::VectorXd MovedBySettling(const Covariance& c, const Eigen::VectorXd& unit,
                                 const FitPoint& point, const FitPoint* free) {
   if (free == nullptr) {
@@ -358,20 +326,14 @@ Eigen::VectorXd MovedBySettling(const Covariance& c, const Eigen::VectorXd& unit
     return -unit.cwiseProduct(SolveLeastNorm(without, gradient));
   }
   const std::vector<double> to = point.Flat(), from = free->Flat();
-  Eigen::VectorXd moved(static_cast<Eigen::Index>(to.size()));
-  for (size_t i = 0; i < to.size(); ++i) moved[static_cast<Eigen::Index>(i)] = to[i] - from[i];
-  return moved;
+  const Eigen::Index size = static_cast<Eigen::Index>(to.size());
+  return Eigen::VectorXd::Map(to.data(), size) - Eigen::VectorXd::Map(from.data(), size);
 }
 
 // Steps of the gradient's differences, in a column's unit: standard errors are within 3e-5 of those
 // by central differences. A likelihood's rows have Jacobians that are differences themselves, whose
 // rounding a small step would magnify.
 constexpr double kCurvatureStep = 3e-7, kCurvatureStepOfLikelihood = 1e-3;
-
-Covariance CovarianceWithoutDemand(FitProblem problem, const FitPoint& free) {
-  problem.set_settling_weight(0.0);
-  return CovarianceAt(problem, free);
-}
 
 }  // namespace
 
@@ -402,7 +364,7 @@ Conditioning ComputeConditioning(const FitProblem& problem, const FitPoint& poin
                                  const ResidualRows& score) {
   const std::vector<FittedColumn> columns = FittedColumns(problem, point);
   const Eigen::VectorXd unit = Units(columns);
-  const Covariance c = NaiveCovariance(score, unit);
+  const Covariance c = ComputeCovariance(score, unit, {});
   Uncertainty u;
   u.covariance = c.naive;
   u.scatter.Add(c.naive, c.naive_freedom);
@@ -419,7 +381,9 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
   const auto& [score, columns, unit, clusters, clustering] = e;
   const int size = static_cast<int>(columns.size());
   const Covariance c = ComputeCovariance(score, unit, free == nullptr ? clustering : Clustering{});
-  const Covariance spread = free == nullptr ? c : CovarianceWithoutDemand(problem, *free);
+  FitProblem undemanding = problem;
+  undemanding.mutable_options()->settling_weight = 0.0;
+  const Covariance spread = free == nullptr ? c : CovarianceAt(undemanding, *free);
 
   Uncertainty u;
   u.num_residuals = score.num_data_rows;
@@ -459,9 +423,7 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
     }
   }
   u.null_directions = DescribeNullSpace(problem, point, null_space, u);
-  std::vector<bool> at_bound;
-  for (const FittedColumn& column : columns) at_bound.push_back(column.at_bound);
-  u.held_directions = HeldDirections(problem, point, c, at_bound);
+  u.held_directions = HeldDirections(problem, columns, c);
   return u;
 }
 

@@ -1,18 +1,16 @@
 // ident: standard errors, naive and clustered, what data, priors and settling contribute to each
 // number, null directions, correlations.
 //
-// Covariances as covariance.h defines them, with Student's t of Satterthwaite's degrees of freedom,
-// parameter by parameter (covariance.h). Naive errors are up to 20 times too small here. A null
-// direction of the scaled Jacobian has no finite error: every parameter it touches is
-// unidentifiable, but combinations orthogonal to it are reported.
+// Covariances and degrees of freedom are those of covariance.h. Naive errors are up to 20 times too
+// small here. A null direction of the scaled Jacobian has no finite error: every parameter it
+// touches is unidentifiable, but combinations orthogonal to it are reported.
 //
 // With H = H_data + H_prior + H_settling the Hessian of the cost, H^-1 = H^-1 H H^-1 splits exactly
 // into what each of the three says: a parameter's shares are the three parts of its diagonal entry.
-// What the priors pull a parameter by is -H^-1 g of their gradient g, to first order. A demand that
-// binds holds a fit on its edge, where its gradient says little: what it moved is the difference to
-// the optimum without it, and its information grows with its weight and says nothing of errors:
-// standard errors are those of the optimum without it. All assume that the data weigh as much as
-// they know (covariance.h).
+// Priors pull a parameter by -H^-1 g of their gradient g, to first order. A demand that binds holds
+// a fit on its edge, where its gradient says little: what it moved is the difference to the optimum
+// without it, and so are the standard errors, as its information grows with its weight and says
+// nothing of errors. All assume that the data weigh as much as they know (covariance.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -55,7 +53,7 @@ constexpr EnumNames<EstimateStatus, 7> Names(EstimateStatus) {
            {"fixed", EstimateStatus::kFixed}}};
 }
 
-// What determines a number: fractions of its variance, and what moved it, natural unit.
+// Fractions of a number's variance, and what moved it, natural unit.
 struct Shares {
   double data = 1.0, prior = 0.0, settling = 0.0;
   double prior_pull = 0.0, settling_pull = 0.0;
@@ -84,11 +82,10 @@ struct Estimate {
 // Whether the data, rather than priors and settling, say what an estimate is.
 bool Leads(const Estimate& e);
 
-// Whether an interval is narrow, on a scale that does not depend on the estimate: of a parameter
-// that is fitted as a logarithm the half-width is below asinh(1/2), half of any value; of others
-// below half the prior's standard deviation, or half the typical size where there is no prior
-// (`width`). Compared with the estimate itself, those that came out too large would pass most
-// often.
+// Whether an interval is narrow, on a scale that does not depend on the estimate, of which too
+// large ones would pass most often: of a parameter that is fitted as a logarithm the half-width is
+// below asinh(1/2), half of any value; of others below half the prior's standard deviation, or half
+// the typical size where there is no prior (`width`).
 bool IsNarrow(Transform transform, double width, double lower95, double upper95);
 
 // About one fitted number, natural unit.
@@ -115,7 +112,7 @@ struct NullDirection {
   std::string sentence;
 };
 
-// What the demand to settle does to a fit.
+// The effect of the demand to settle on a fit.
 struct SettlingDemand {
   bool binds = false;         // the fit without it does not settle in time
   bool contradicted = false;  // by the data: dropped
@@ -138,8 +135,7 @@ struct Uncertainty {
   double sigma = 0.0;                   // residual standard deviation, in sigmas
   int freedom = 1;                      // of all numbers together: clusters less one
   double condition_number = 0.0;        // of the scaled Jacobian, without null directions
-  // Fewer clusters than shared parameters and one: their clustered covariance has no full rank, so
-  // correlations are the naive ones.
+  // Fewer clusters than shared parameters and one: correlations are the naive ones.
   bool too_few_clusters = false;
   bool full_hessian = false;        // whether the covariance knows second derivatives
   std::vector<Estimate> estimates;  // in the order of FitPoint::Flat
@@ -165,8 +161,8 @@ Covariance CovarianceAt(const FitProblem& problem, const FitPoint& point);
 Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
                                const FitPoint* free = nullptr);
 
-// What the recordings alone leave undetermined at a point, and how badly conditioned the rest is;
-// cheaper than all of Uncertainty. score: of the problem there.
+// Directions that the recordings alone leave undetermined at a point, and the condition of the
+// rest; cheaper than all of Uncertainty. score: of the problem there.
 struct Conditioning {
   double condition_number = 0.0;
   std::vector<NullDirection> null_directions;
@@ -186,7 +182,7 @@ struct CombinationSpec {
 Combination Combine(const FitProblem& problem, const FitPoint& point,
                     const Uncertainty& uncertainty, const CombinationSpec& spec);
 
-// What every result reports beside its parameters: c = mu + Kp, and gains per mass of the reference
+// Reported beside the parameters of every result: c = mu + Kp, and gains per mass of the reference
 // person.
 std::vector<CombinationSpec> DerivedCombinations(const ModelOptions& model);
 

@@ -1,4 +1,4 @@
-// What is said before and after a fit, each finding provoked on purpose.
+// Findings before and after a fit, each provoked on purpose.
 #include "ident/diagnostics/diagnostics.h"
 
 #include <gtest/gtest.h>

@@ -96,7 +96,7 @@ TEST(Covariates, SlopesOfExactDataAreFound) {
   EXPECT_EQ(ContrastText(read.fit), ContrastText(result));
 }
 
-// The same people before and after: paired, by a label of the recordings.
+// People before and after: paired, by a label of the recordings.
 TEST(Covariates, PeopleInBothAreNamed) {
   const SyntheticOptions study = TinyStudy();
   std::vector<PendulumRecording> recordings = MakePendulums(study);
@@ -172,7 +172,7 @@ TEST(Covariates, BadInputIsNamed) {
     ASSERT_TRUE(error) << one.contrast << one.covariates;
     EXPECT_TRUE(Contains(error->message, one.message));
   }
-  // What is always known.
+  // Facts that are always known.
   FitOptions by_mass = WithCovariates(DefaultFit(study), "", "Kp_theta ~ mass + rod");
   EXPECT_FALSE(PrepareFit(recordings, &by_mass));
   EXPECT_NE(by_mass.table.Find("Kp_theta~mass"), nullptr);

@@ -86,7 +86,7 @@ TEST(Directions, SidewaysIsAsForwards) {
   for (const Estimate& e : result.estimates) EXPECT_NE(e.name, "Kp_phi");
 }
 
-// What a model predicts turns with the recording, whatever axes it sees it in.
+// A prediction turns with the recording, whatever axes it sees it in.
 TEST(Directions, PredictionsTurnWithTheRecording) {
   SyntheticOptions study = People();
   study.joint_noise_m = 0.0;

@@ -185,7 +185,7 @@ TEST(FitSetup, OptionsOfGroupsAreNotRefusedTooEarly) {
   }
 }
 
-// What a candidate takes over from the flags given need not act in it; what it is given itself
+// Flags that a candidate takes over need not act in it; what it is given itself
 // must.
 TEST(FitSetup, OnlyACandidatesOwnOptionsMustAct) {
   const GivenOptions given = {{"self_force", "mlp:2"}, {"network_prior", "0.5"}};

@@ -101,7 +101,7 @@ TEST(GroupRecovery, NoiseOfTwoMillimetresStaysInsideTheIntervals) {
     }
   }
   RecordProperty("covered", covered);
-  // Of 96 intervals 91 should cover; fewer than 83 happen once in a thousand times.
+  // 91 of 96 intervals should cover; fewer than 83 happen once in a thousand times.
   EXPECT_GE(covered, 83) << "of " << total;
 }
 

@@ -1,4 +1,4 @@
-// What the data cannot tell apart is said so, by name, and leaves the rest alone.
+// Parameters that the data cannot tell apart are said so, by name, and leaves the rest alone.
 #include <gtest/gtest.h>
 
 #include <set>

@@ -1,4 +1,4 @@
-// What of a laboratory does not go together is refused, with what to leave out.
+// Parts of a laboratory that do not go together are refused, with what to leave out.
 #include <gtest/gtest.h>
 
 #include "ident/fit/fit_setup.h"

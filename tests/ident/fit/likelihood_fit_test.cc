@@ -89,7 +89,7 @@ TEST(InnovationFit, FindsPlantedNoiseAndGains) {
   EXPECT_GE(covered, 34);  // 87 %
 }
 
-// Of measured states the errors count as noise.
+// Errors of measured states count as noise.
 TEST(TransitionFit, OnExactStatesFindsTheNoise) {
   SyntheticOptions study = ProcessNoiseStudy(4);
   study.joint_noise_m = 0.0;

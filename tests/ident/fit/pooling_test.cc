@@ -59,7 +59,7 @@ TEST(Pooling, SubjectsKeepTheirOwnAndShrinkTogether) {
   EXPECT_LT(last, 1.0);
 }
 
-// What another fit found, of as many pooled parameters; or nothing.
+// Deviations that another fit found, of as many pooled parameters; or nothing.
 TEST(Pooling, DeviationsStartWhereOptionsSay) {
   const SyntheticOptions study = SmallStudy();
   const std::vector<PendulumRecording> recordings = TwoFrictions(study);

@@ -1,4 +1,4 @@
-// What recorded feet did, and the stance that a fit takes from it.
+// Recorded feet, and the stance that a fit takes from them.
 #include <gtest/gtest.h>
 
 #include "ident/fit/fit_setup.h"

@@ -103,7 +103,7 @@ TEST_P(Defaults, Bias) {
   const FitResult result = Fit(recordings, options);
   ASSERT_TRUE(result.ok());
   for (Parameter id : options.table.Free()) {
-    // Of a truth of zero over a typical size.
+    // The error of a truth of zero is over a typical size.
     const double truth = study.parameters[id];
     const double bias =
         (result.parameters[id] - truth) / (truth != 0.0 ? truth : options.table[id].scale);

@@ -108,7 +108,7 @@ TEST(StepProbability, MarginIsTheDistanceBeyondTheSupport) {
   EXPECT_NEAR(margin(), StepMargin(0.1, 0.15 / 0.06), 1e-6);
 }
 
-// Of feet that step: with a support that is larger by the margin a person just steps no more.
+// Feet that step: with a support that is larger by the margin a person just steps no more.
 TEST(StepProbability, MarginOfFeetThatStepIsTheirOwn) {
   ModelOptions options;
   options.stance = Stance::kSteps;

@@ -66,7 +66,7 @@ TEST(WeightedSolve, WhoSettlesIsNotMoved) {
   EXPECT_NEAR(Fit(recordings, without).parameters[kMu], result.parameters[kMu], 1e-3);
 }
 
-// Of three recordings, noisy and short, nothing contradicts the demand: it holds.
+// Three recordings, noisy and short, do not contradict the demand: it holds.
 TEST(WeightedSolve, ADemandThatIsNotContradictedHolds) {
   const SyntheticOptions study = Scarce(Truth(25.0, 1800.0, -9.0), 1, 20, 0.03);
   const FitResult result = FitOf(study);

@@ -102,7 +102,8 @@ TEST(Futures, OfFeetThatStepHaveTheirProbability) {
     ASSERT_TRUE(RolloutInOwnAxes(recording, model.options, PeoplesParameters(model, recording),
                                  recording.num_frames(), &path)
                     .ok);
-    const double margin = StepMargins(model, recording, path)[0];
+    const double margin =
+        StepMargins(model.options, PeoplesParameters(model, recording), recording, path)[0];
     model.step_probability->coefficients = {1.0 - 20.0 * margin, 20.0};
     const double probability = model.step_probability->At(margin);
     const Futures futures = DrawFutures(model, recording, 300, 1).value();

@@ -1,4 +1,4 @@
-// Which models settle after a push, and which walk away or fall.
+// Models that settle after a push, and models that walk away or fall.
 #include "ident/problem/behaviour.h"
 
 #include <ceres/jet.h>

@@ -1,5 +1,5 @@
-// What a report says of a person after a push, in every combination of findings: no sentence may
-// contradict another.
+// A report on a person after a push, in every combination of findings: no sentence may contradict
+// another.
 #include <gtest/gtest.h>
 
 #include "ident/model/fitted_model.h"

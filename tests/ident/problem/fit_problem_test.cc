@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ident/fit/fit_setup.h"
 #include "ident/problem/residual_rows.h"
 #include "residuals/cost_functions/rest_residual.h"
 #include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -88,7 +90,7 @@ TEST(FitProblem, WhatIsLaidOutGoesWithTheWeights) {
   const double before = CostOf(problem, point);
   FitProblem weighed = problem;
   EXPECT_EQ(CostOf(weighed, point), before);
-  CostWeights weights = problem.weights();
+  FitOptions weights = problem.options();
   weights.sigmas.hip *= 2.0;
   weighed.SetWeights(weights);
   options.sigmas = weights.sigmas;
@@ -98,50 +100,37 @@ TEST(FitProblem, WhatIsLaidOutGoesWithTheWeights) {
   EXPECT_EQ(EvaluateRows(weighed.WithoutRecordings(), point).num_data_rows, 0);
 }
 
-std::vector<std::string> FamiliesOf(const FitOptions& options, int horizon) {
-  std::vector<std::string> names;
-  for (const ResidualFamily& family : ResidualFamilies()) {
-    if (family.on(options, horizon)) names.push_back(family.name);
-  }
-  return names;
-}
-
-// Which rows of the table a fit minimizes, stage by stage.
-TEST(FitProblem, FamiliesOfAStage) {
-  using Names = std::vector<std::string>;
-  constexpr int kFirst = 10, kLast = 0;
-  FitOptions options = MakePreset("tail").value();
-  options.network_prior = 0.0;
-  EXPECT_EQ(FamiliesOf(options, kFirst),
-            (Names{"trajectory", "priors", "pooling", "stage priors"}));
-  EXPECT_EQ(FamiliesOf(options, kLast), (Names{"trajectory", "priors", "pooling", "settling"}));
-  options.self_force = SelfForceKind::kLinear;
-  options.network_prior = 0.5;
-  EXPECT_EQ(FamiliesOf(options, kLast),
-            (Names{"trajectory", "priors", "pooling", "network prior", "settling"}));
-  SetLikelihood(Likelihood::kInnovation, &options);
-  EXPECT_EQ(FamiliesOf(options, kLast),
-            (Names{"likelihood", "priors", "pooling", "network prior"}));
-}
-
-// Rows of recordings come first, by recording; then what is added once, then what units are asked.
-TEST(FitProblem, BlocksFollowTheTable) {
-  const auto recordings = MakePendulums(TinyStudy());
-  FitOptions options = MakePreset("tail").value();
-  options.self_force = SelfForceKind::kLinear;
-  const FitProblem problem(recordings, options);
+// The clusters of a problem's blocks, in order, each run once.
+std::vector<int> ClustersOf(const FitProblem& problem, int horizon) {
   FitPoint point = problem.NominalPoint();
-  const FitProblem::Built built = problem.Build(&point, 0);
+  const FitProblem::Built built = problem.Build(&point, horizon);
   std::vector<int> clusters;
   for (const FitProblem::Built::Block& block : built.blocks) {
     if (clusters.empty() || clusters.back() != block.cluster) clusters.push_back(block.cluster);
   }
-  std::vector<int> expected;
-  for (int i = 0; i < static_cast<int>(recordings.size()); ++i) expected.push_back(i);
-  expected.push_back(FitProblem::kPriorCluster);
-  if (!point.unit.empty()) expected.push_back(FitProblem::kPoolingCluster);
-  expected.push_back(FitProblem::kSettlingCluster);
-  EXPECT_EQ(clusters, expected);
+  return clusters;
+}
+
+// Rows of recordings come first, by recording; then what is added once, then what units are asked,
+// stage by stage and likelihood by likelihood.
+TEST(FitProblem, BlocksOfAStage) {
+  constexpr int kPrior = FitProblem::kPriorCluster, kPooling = FitProblem::kPoolingCluster,
+                kNetwork = FitProblem::kNetworkCluster, kSettling = FitProblem::kSettlingCluster;
+  constexpr int kFirst = 10, kLast = 0;
+  const auto recordings = MakePendulums(TinyStudy());
+  const auto with = [&recordings](std::vector<int> more) {
+    for (int i = static_cast<int>(recordings.size()) - 1; i >= 0; --i) more.insert(more.begin(), i);
+    return more;
+  };
+  FitOptions options = MakePreset("tail").value();
+  EXPECT_EQ(ClustersOf(FitProblem(recordings, options), kFirst), with({kPrior, kPooling, kPrior}));
+  EXPECT_EQ(ClustersOf(FitProblem(recordings, options), kLast),
+            with({kPrior, kPooling, kSettling}));
+  FitOptions mlp = Unwrapped(MakeFitOptions({{"preset", "tail"}, {"self_force", "mlp:4"}}));
+  EXPECT_EQ(ClustersOf(FitProblem(recordings, mlp), kLast),
+            with({kPrior, kPooling, kNetwork, kSettling}));
+  SetLikelihood(Likelihood::kInnovation, &options);
+  EXPECT_EQ(ClustersOf(FitProblem(recordings, options), kLast), with({kPrior, kPooling}));
 }
 
 // The harder the push, the sooner: of those that are rolled out side by side the others stay.
@@ -168,7 +157,7 @@ TEST(FitProblem, LeavesOutTheSettlingSimulationsThatFall) {
   }
 }
 
-// Of everything that a preset puts into its cost, priors, demands and values that others follow
+// Everything that a preset puts into its cost, priors, demands and values that others follow
 // among it, where people neither settle nor stay stable.
 TEST(FitProblem, TheGradientIsThatOfTheCostInEveryPreset) {
   SyntheticOptions study = TinyStudy();

@@ -211,7 +211,7 @@ TEST(LinearLoop, SlidingFeetToo) {
   }
 }
 
-// What the ankles feel of the cart's velocity is as late as all else, in rollouts, here and in the
+// The cart's velocity is felt by the ankles as late as all else, in rollouts, here and in the
 // modes of their steps.
 TEST(LinearLoop, ModesAreThoseOfSteps) {
   ModelOptions options;

@@ -92,7 +92,7 @@ TEST(PoolingSpread, EndsWhereEmStandsStill) {
   }
   mean /= static_cast<double>(point.unit.size());
   EXPECT_NEAR(std::sqrt(mean) / sigma, 1.0, 0.01);
-  CostWeights weights = problem.weights();
+  FitOptions weights = problem.options();
   EXPECT_LT(UpdatePoolingSpread(problem, point, &weights), 0.01);
 }
 

@@ -34,7 +34,7 @@ struct Planted {
     recordings = MakePendulums(study);
   }
 
-  // Those whose number modulo 6 lies in [first, last).
+  // Recordings whose number modulo 6 lies in [first, last).
   std::vector<AdjointRecording> Some(int first, int last) const {
     std::vector<AdjointRecording> some;
     for (size_t i = 0; i < recordings.size(); ++i) {

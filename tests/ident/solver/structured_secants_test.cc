@@ -1,4 +1,4 @@
-// What secants learn, and how many steps that saves.
+// Curvature that secants learn, and how many steps that saves.
 #include "ident/solver/structured_secants.h"
 
 #include <ceres/autodiff_cost_function.h>
@@ -8,7 +8,6 @@
 
 #include "ident/problem/residual_rows.h"
 #include "ident/solver/solver.h"
-#include "ident/solver/summed_cost.h"
 #include "ident/uncertainty/covariance.h"
 #include "tests/ident/fit_samples.h"
 
@@ -81,7 +80,7 @@ TEST_F(Secants, TheSamePointTwiceChangesNothing) {
   EXPECT_LT((once.hessian - twice.hessian).norm(), 1e-12);
 }
 
-// What nothing depends on stays, and so does everything where nothing is left.
+// A number that nothing depends on stays, and so does everything where nothing is left.
 TEST_F(Secants, ColumnsWithoutInformationAndCostsOfZeroHaveRows) {
   StructuredSecants secants(true);
   SecondOrder rows = SecondOrder::Zero(2);

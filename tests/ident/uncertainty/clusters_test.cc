@@ -1,4 +1,4 @@
-// Whose errors are independent, and how well the scatter over them is known.
+// Clusters of independent errors, and how well the scatter over them is known.
 
 #include <Eigen/Core>
 
@@ -156,7 +156,7 @@ TEST(Clusters, OfRecordingsAreAboutThesePeople) {
   EXPECT_FALSE(one.draws_people);
 }
 
-// Who is weighed anew before each session stays one person.
+// A person who is weighed anew before each session stays one person.
 TEST(Clusters, AnIdWithTwoMassesIsOnePerson) {
   auto recordings = MakePendulums(TinyStudy());
   recordings[0].scene.people[0].body.mass *= 1.006;

@@ -11,9 +11,23 @@
 namespace pushid {
 namespace {
 
+// Rows with these p values, of which NaN stands for one that is unidentifiable.
+std::vector<double> Corrected(const std::vector<double>& p) {
+  Contrast contrast;
+  for (double one : p) {
+    ContrastRow& row = contrast.rows.emplace_back();
+    if (std::isnan(one)) row.status = EstimateStatus::kUnidentifiable;
+    row.p = one;
+  }
+  CorrectForRows(&contrast);
+  std::vector<double> corrected;
+  for (const ContrastRow& row : contrast.rows) corrected.push_back(row.p_holm);
+  return corrected;
+}
+
 // By hand (Holm 1979): 4 * 0.005 = 0.02, 3 * 0.01 = 0.03, 2 * 0.03 = 0.06, 1 * 0.04 = 0.04 < 0.06.
-TEST(HolmCorrected, ByHand) {
-  const std::vector<double> corrected = HolmCorrected({0.01, 0.04, 0.03, 0.005});
+TEST(CorrectForRows, ByHand) {
+  const std::vector<double> corrected = Corrected({0.01, 0.04, 0.03, 0.005});
   ASSERT_EQ(corrected.size(), 4u);
   EXPECT_DOUBLE_EQ(corrected[0], 0.03);
   EXPECT_DOUBLE_EQ(corrected[1], 0.06);
@@ -21,11 +35,11 @@ TEST(HolmCorrected, ByHand) {
   EXPECT_DOUBLE_EQ(corrected[3], 0.02);
 }
 
-TEST(HolmCorrected, NeverExceedsOneAndTakesTheUnknownAsOne) {
+TEST(CorrectForRows, NeverExceedsOneAndDoesNotCountTheUnknown) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(HolmCorrected({0.6, 0.7, nan}), (std::vector<double>{1.0, 1.0, 1.0}));
-  EXPECT_EQ(HolmCorrected({0.2}), std::vector<double>{0.2});
-  EXPECT_TRUE(HolmCorrected({}).empty());
+  EXPECT_EQ(Corrected({0.6, 0.7, nan}), (std::vector<double>{1.0, 1.0, 1.0}));
+  EXPECT_EQ(Corrected({0.2, nan}), (std::vector<double>{0.2, 1.0}));
+  EXPECT_TRUE(Corrected({}).empty());
 }
 
 // With one part it is Student's own; with none of freedom, the normal one.

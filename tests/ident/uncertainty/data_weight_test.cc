@@ -1,4 +1,4 @@
-// What the data weigh comes from the data.
+// The weight of the data comes from the data.
 #include "ident/fit/fit.h"
 #include "ident/problem/residual_rows.h"
 #include "ident/solver/solver.h"
@@ -53,7 +53,7 @@ FitProblem EffectivelyWeighed(const std::vector<PendulumRecording>& recordings) 
   return FitProblem(recordings, options);
 }
 
-// What counts is weight over sigma squared: told that errors are twice as large, a frame counts
+// Weight over sigma squared counts: told that errors are twice as large, a frame counts
 // four times as much.
 TEST(DataWeight, MakesUpForSigmas) {
   const auto recordings = MakePendulums(Noisy(0.003));
@@ -63,7 +63,7 @@ TEST(DataWeight, MakesUpForSigmas) {
   const FitPoint& point = solution.start.to;
   RecordingSums sums;
   const double weight = EstimateEffectiveWeight(problem, point, &sums);
-  CostWeights weights = problem.weights();
+  FitOptions weights = problem.options();
   ResidualSigmas& sigmas = weights.sigmas;
   for (double* sigma : {&sigmas.hip, &sigmas.velocity, &sigmas.angle, &sigmas.rate}) *sigma *= 2.0;
   problem.SetWeights(weights);
@@ -77,7 +77,7 @@ TEST(DataWeight, TellsTheSumsOfRecordings) {
   FitProblem problem = EffectivelyWeighed(recordings);
   FitPoint point = problem.NominalPoint();
   RecordingSums sums;
-  CostWeights weights = problem.weights();
+  FitOptions weights = problem.options();
   weights.effective_weight = 0.0;
   problem.SetWeights(weights);
   weights.effective_weight = EstimateEffectiveWeight(problem, point, &sums);
@@ -94,7 +94,7 @@ TEST(DataWeight, TellsTheSumsOfRecordings) {
   EXPECT_LT((sums.sums.gradient - gradient).norm(), 1e-9 * gradient.norm());
   EXPECT_NEAR(sums.squares, anew.squares, 1e-9 * anew.squares);
 
-  // Who knows them takes the same way.
+  // A solve that knows them takes the same way.
   const SolveStart plain = Refit(problem, point), knowing = Refit(problem, point, 1, sums);
   EXPECT_EQ(knowing.iterations, plain.iterations);
   EXPECT_NEAR(knowing.cost, plain.cost, 1e-9 * plain.cost);
@@ -172,7 +172,7 @@ TEST(DataWeight, WhatThePriorsHoldIsCalledSo) {
   ASSERT_NE(stiffness, nullptr);
   EXPECT_LT(stiffness->shares.data, 0.5);
   EXPECT_EQ(stiffness->status, EstimateStatus::kPriorHeld);
-  // What its prior holds is no better known than the prior says.
+  // A parameter that its prior holds is no better known than the prior says.
   const Prior& prior = *options.table[kKpTheta].prior;
   EXPECT_GT(stiffness->standard_error / stiffness->value, 0.3 * prior.sigma / prior.mean);
   EXPECT_FALSE(u.held_directions.empty());

@@ -64,7 +64,7 @@ TEST(HorizonCheck, TheTruthDoesNotDrift) {
   }
 }
 
-// The same recordings, with people who stand for `frames` frames before they are pushed.
+// Recordings with people who stand for `frames` frames before they are pushed.
 std::vector<PendulumRecording> Waiting(std::vector<PendulumRecording> recordings, int frames) {
   for (PendulumRecording& r : recordings) {
     for (int n = 0; n < r.num_people(); ++n) {
@@ -77,7 +77,7 @@ std::vector<PendulumRecording> Waiting(std::vector<PendulumRecording> recordings
   return recordings;
 }
 
-// Of frames before the push nothing is learned: they move neither stages nor horizons.
+// Nothing is learned of frames before the push: they move neither stages nor horizons.
 TEST(HorizonCheck, HorizonsCountFromThePush) {
   SyntheticOptions study = TinyStudy();
   study.push_kind = PushKind::kExternal;

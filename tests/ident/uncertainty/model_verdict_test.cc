@@ -1,4 +1,4 @@
-// What a verdict finds, and what it does not.
+// Faults that a verdict finds, and faults that it does not.
 #include "ident/uncertainty/model_verdict.h"
 
 #include <gtest/gtest.h>

@@ -32,7 +32,7 @@ std::unique_ptr<Solved> SolveSmall(int recordings, double prior_sigma) {
   solved->recordings = MakePendulums(study);
   solved->recordings.resize(recordings);
   solved->options = UnbiasedFit(study);
-  // Of one person recordings are the clusters.
+  // With one person recordings are the clusters.
   for (PendulumRecording& r : solved->recordings) r.subject_ids = {"S1"};
   for (ParameterSpec& spec : solved->options.table.specs) {
     spec.free = spec.id == kMu || spec.id == kKpTheta || spec.id == kTailGain;
