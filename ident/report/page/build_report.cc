@@ -20,23 +20,6 @@ namespace {
 
 constexpr int kBandSamples = 100;
 
-std::string NoteOf(const FitResult& result, const PendulumRecording& recording,
-                   const Prediction& prediction) {
-  const auto fitted =
-      std::find_if(result.recordings.begin(), result.recordings.end(),
-                   [&recording](const FittedRecording& r) { return r.id == recording.id; });
-  std::string note;
-  if (fitted == result.recordings.end()) {
-    note = "not among the recordings that were fitted";
-  } else if (fitted->content_hash != recording.content_hash) {
-    note = "its files have changed since the fit";
-  }
-  if (prediction.status.ok) return note;
-  return note + (note.empty() ? "" : "; ") + std::string(prediction.status.quantity) +
-         " of person " + std::to_string(prediction.status.person) +
-         " leaves the model's domain at frame " + std::to_string(prediction.status.frame);
-}
-
 // The recordings must outlive the views.
 std::vector<RecordingView> ViewRecordings(const FitResult& result,
                                           const std::vector<Recording>& recordings, int num_threads,
@@ -49,7 +32,20 @@ std::vector<RecordingView> ViewRecordings(const FitResult& result,
     view.recording = &recordings[i];
     view.run.recording = MakePendulumRecording(recordings[i]);
     view.run.prediction = Predict(model, view.run.recording);
-    view.note = NoteOf(result, view.run.recording, view.run.prediction);
+    const auto known =
+        std::find_if(result.recordings.begin(), result.recordings.end(),
+                     [&](const FittedRecording& r) { return r.id == view.run.recording.id; });
+    if (known == result.recordings.end()) {
+      view.note = "not among the recordings that were fitted";
+    } else if (known->content_hash != view.run.recording.content_hash) {
+      view.note = "its files have changed since the fit";
+    }
+    const RolloutStatus& status = view.run.prediction.status;
+    if (!status.ok) {
+      view.note += (view.note.empty() ? "" : "; ") + std::string(status.quantity) + " of person " +
+                   std::to_string(status.person) + " leaves the model's domain at frame " +
+                   std::to_string(status.frame);
+    }
     if (view.note.empty()) fitted.push_back(view.run.recording);
   }
   BandOptions options;
