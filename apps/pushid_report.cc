@@ -71,8 +71,7 @@ std::vector<Recording> RecordingsOf(const FitResult& fit) {
 int WriteWhole(const FittedModel& model) {
   const std::vector<Recording> recordings = RecordingsOf(model.fit);
   ProgressLine line;
-  const BuildReportOptions options{FLAGS_num_threads, line.OfJobs("recording")};
-  const Report report = BuildReport(model, recordings, options);
+  const Report report = BuildReport(model, recordings, FLAGS_num_threads, line.OfJobs("recording"));
   line.Finish();
   if (FLAGS_details) std::printf("%s", ToText(report).c_str());
   if (FiguresAsked()) WriteFigures(report);

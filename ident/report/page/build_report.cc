@@ -156,7 +156,7 @@ Figure BodeFigure(const FrequencyResponse& response) {
 }  // namespace
 
 Report BuildReport(const FittedModel& model, const std::vector<Recording>& recordings,
-                   const BuildReportOptions& options) {
+                   int num_threads, const JobProgress& progress) {
   const FitResult& result = model.fit;
   Report report;
   report.title = "pushid: " + std::to_string(result.recordings.size()) + " recordings (" +
@@ -164,7 +164,7 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
   report.subtitle =
       "parameters, their uncertainty and their predictions; pushid " + model.provenance.version;
   ReportSource source{model};
-  source.views = ViewRecordings(result, recordings, options.num_threads, options.progress);
+  source.views = ViewRecordings(result, recordings, num_threads, progress);
   const IdentifiedModel identified = ModelOf(result);
   source.frequency = FrequencyResponses(identified, MakePendulumRecordings(recordings));
   std::vector<PropagationScore> scores;
@@ -181,7 +181,7 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
   return report;
 }
 
-std::string DetailsText(const FittedModel& model) { return ToText(BuildReport(model, {}, {})); }
+std::string DetailsText(const FittedModel& model) { return ToText(BuildReport(model, {})); }
 
 ReportSection StepSection(const ReportSource& source) {
   ReportSection section{"steps", "Who steps"};
