@@ -56,8 +56,7 @@ int WriteWhole(const FittedModel& model) {
   std::vector<Recording> recordings;  // to draw
   if (!FLAGS_recordings.empty()) recordings = LoadFittedRecordings(model.fit, true);
   ProgressLine line;
-  const BuildReportOptions options{FLAGS_num_threads, line.OfJobs("recording")};
-  const Report report = BuildReport(model, recordings, options);
+  const Report report = BuildReport(model, recordings, FLAGS_num_threads, line.OfJobs("recording"));
   line.Finish();
   if (FLAGS_details) std::printf("%s", ToText(report).c_str());
   if (!FLAGS_figures_out.empty()) WriteFigures(report);

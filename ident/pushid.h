@@ -136,7 +136,7 @@ inline Result<Study> RunStudy(const StudyOptions& study) {
         RestoreBodies(*restoration.value(), {}, PredictedPeople(seen, predicted)));
   }
   if (study.page.empty()) return done;
-  const Report report = BuildReport(done.model, held_out.value(), {});
+  const Report report = BuildReport(done.model, held_out.value());
   if (auto error = WriteFileAtomically(study.page, ToPage(report))) return *error;
   return done;
 }

@@ -180,14 +180,13 @@ void Save(const Model& model, const std::string& path) {
 // A report with figures of the recordings that the model has, if any. Releases the GIL.
 Report ReportOf(const FittedModel& fitted, const Model& model) {
   const std::shared_ptr<const FittedTo> to = model.to;
-  BuildReportOptions options;
-  options.progress = JobsOf(py::none());
+  const JobProgress progress = JobsOf(py::none());
   const py::gil_scoped_release no_gil;
   std::vector<Recording> drawn;
   if (to) {
     for (const SharedRecording& one : to->recordings) drawn.push_back(*one);
   }
-  return BuildReport(fitted, drawn, options);
+  return BuildReport(fitted, drawn, 1, progress);
 }
 
 // The page of a model that pushid-fit made has commands, as the program's own.

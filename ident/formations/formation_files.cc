@@ -55,23 +55,6 @@ BvhMotion PendulumMotion(const FormationRun& run, int person) {
   return motion;
 }
 
-ManifestRecording Entry(const FormationRun& run) {
-  ManifestRecording entry;
-  entry.id = run.recording.id;
-  entry.labels = run.recording.labels;
-  entry.labels.Set(kMagnitudeLabel, "simulated");
-  entry.fps = 1.0 / run.recording.scene.dt;
-  entry.frames = run.num_frames();
-  entry.pushed_person = run.recording.pushed_person;
-  if (!run.recording.scene.pushes.empty()) {
-    entry.push_kind = run.recording.scene.pushes.front().kind;
-  }
-  entry.joints.hip = JointReference{"Hips"};
-  entry.joints.left_ankle = JointReference{"LeftAnkle"};
-  entry.joints.right_ankle = JointReference{"RightAnkle"};
-  return entry;
-}
-
 constexpr double kWaveWidth = 960, kWaveHeight = 380;  // pixels, of all people
 constexpr double kFastWalk = 2.5;  // m/s; faster than that somebody falls, and colours saturate
 constexpr int kColours = 48;       // levels of speed that are told apart, either way
@@ -213,7 +196,19 @@ MaybeError WriteFormationRecording(const std::string& folder, const FormationRun
   std::error_code ignored;
   std::filesystem::remove(folder + "/manifest.json", ignored);
   const Scene& scene = run.recording.scene;
-  ManifestRecording entry = Entry(run);
+  ManifestRecording entry;
+  entry.id = run.recording.id;
+  entry.labels = run.recording.labels;
+  entry.labels.Set(kMagnitudeLabel, "simulated");
+  entry.fps = 1.0 / scene.dt;
+  entry.frames = run.num_frames();
+  entry.pushed_person = run.recording.pushed_person;
+  if (!scene.pushes.empty()) {
+    entry.push_kind = scene.pushes.front().kind;
+  }
+  entry.joints.hip = JointReference{"Hips"};
+  entry.joints.left_ankle = JointReference{"LeftAnkle"};
+  entry.joints.right_ankle = JointReference{"RightAnkle"};
   for (int n = 0; n < run.num_people(); ++n) {
     const std::string& name = run.recording.subject_ids[n];
     entry.subjects.push_back({name, scene.people[n].body.mass});

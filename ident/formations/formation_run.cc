@@ -133,22 +133,6 @@ std::string SpeedOf(double slowness, double half_width, const std::string& from)
                         : "it cannot be determined (" + ending + ")";
 }
 
-// Hips in m under the subjects' names; frames that do not count are not seen.
-PointMotion HipTrajectories(const Recording& recording) {
-  PointMotion motion;
-  motion.rate_hz = recording.fps;
-  for (const RecordedPerson& person : recording.people) {
-    motion.names.push_back(person.subject_id);
-    motion.positions.push_back(person.hip);
-    for (size_t frame = 0; frame < person.weight.size(); ++frame) {
-      if (person.weight[frame] > 0.0) continue;
-      motion.positions.back()[frame].setConstant(std::numeric_limits<double>::quiet_NaN());
-    }
-  }
-  ChoosePoints({}, &motion);
-  return motion;
-}
-
 }  // namespace
 
 std::string OutcomeLegend() {
@@ -435,7 +419,18 @@ Result<std::vector<MeasuredWave>> MeasureWaves(const std::string& path) {
     if (!recordings.ok()) return recordings.error();
     for (const Recording& recording : recordings.value()) {
       if (recording.people.size() < 2) continue;
-      waves.push_back(MeasureWave(recording.id, HipTrajectories(recording)));
+      PointMotion hips;  // m, under the subjects' names; frames that do not count are not seen
+      hips.rate_hz = recording.fps;
+      for (const RecordedPerson& person : recording.people) {
+        hips.names.push_back(person.subject_id);
+        hips.positions.push_back(person.hip);
+        for (size_t frame = 0; frame < person.weight.size(); ++frame) {
+          if (person.weight[frame] > 0.0) continue;
+          hips.positions.back()[frame].setConstant(std::numeric_limits<double>::quiet_NaN());
+        }
+      }
+      ChoosePoints({}, &hips);
+      waves.push_back(MeasureWave(recording.id, hips));
     }
     if (waves.empty()) return Error{"no recording of several people", path};
     return waves;

@@ -56,11 +56,6 @@ constexpr double kNormal[] = {0.0627, 0.1257, 0.1891, 0.2533, 0.3186, 0.3853, 0.
                               0.5244, 0.5978, 0.6745, 0.7554, 0.8416, 0.9346, 1.0364,
                               1.1503, 1.2816, 1.4395, 1.6449, 1.9600, 2.5758};
 
-std::vector<double> QuantilesOf(const ErrorScale& error) {
-  if (static_cast<int>(error.quantiles.size()) == kNumShares) return error.quantiles;
-  return {std::begin(kNormal), std::end(kNormal)};
-}
-
 // The fall of the logarithm of the share above between the last two quantiles.
 double LastFall() {
   return std::log((1.0 - kErrorShares[kNumShares - 2]) / (1.0 - kErrorShares[kNumShares - 1]));
@@ -136,18 +131,6 @@ HipPaths BlendedBy(const ForecastRule& rule, const ForecastTrial& trial) {
   const HipPaths& input = trial.input[tail];
   const auto share = InputShare(rule.input_time, trial.physics, input, trial.seconds);
   return share ? Blended(*share, trial.physics, input) : HipPaths();
-}
-
-// Every fold's forecasts by a rule that was learned without it.
-std::vector<HipPaths> NestedForecasts(const std::vector<ForecastTrial>& trials, int folds) {
-  std::vector<HipPaths> centre(trials.size());
-  for (int f = 0; f < std::max(1, folds); ++f) {
-    const ForecastRule rule = folds > 0 ? LearnRule(trials, f) : ForecastRule();
-    for (size_t i = 0; i < trials.size(); ++i) {
-      if (trials[i].fold == f) centre[i] = BlendedBy(rule, trials[i]);
-    }
-  }
-  return centre;
 }
 
 // A hip some frames ahead, on the axes of the push. A trial counts once, however many frames it
@@ -360,7 +343,10 @@ HipDistribution::HipDistribution(const std::array<ErrorScale, 3>& errors,
   for (int i = 0; i < 3; ++i) {
     Eigen::Index nearest = 0;
     axes.row(i).cwiseAbs().maxCoeff(&nearest);
-    quantiles_[i] = QuantilesOf(errors[nearest]);
+    quantiles_[i] = errors[nearest].quantiles;
+    if (static_cast<int>(quantiles_[i].size()) != kNumShares) {
+      quantiles_[i].assign(std::begin(kNormal), std::end(kNormal));
+    }
   }
   for (size_t n = 0; n < centre_.size(); ++n) {
     scale_.emplace_back();
@@ -474,7 +460,15 @@ std::optional<ForecastRule> LearnForecasts(const IdentifiedModel& model,
   for (const ForecastTrial& trial : trials) forecast.insert(trial.recording);
   rule.folds = static_cast<int>(folds.size());
   rule.recordings = static_cast<int>(forecast.size());
-  rule.errors = LearnErrorScales(trials, NestedForecasts(trials, rule.folds));
+  // Every fold's forecasts by a rule that was learned without it.
+  std::vector<HipPaths> centre(trials.size());
+  for (int f = 0; f < std::max(1, rule.folds); ++f) {
+    const ForecastRule without = rule.folds > 0 ? LearnRule(trials, f) : ForecastRule();
+    for (size_t i = 0; i < trials.size(); ++i) {
+      if (trials[i].fold == f) centre[i] = BlendedBy(without, trials[i]);
+    }
+  }
+  rule.errors = LearnErrorScales(trials, centre);
   return rule;
 }
 

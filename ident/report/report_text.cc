@@ -81,20 +81,6 @@ std::string StatedText(const AssumptionTest& test) {
                                     : Rounded(test.stated, 2) + " " + test.unit);
 }
 
-// "the lag of the pushes 0.6 +- 0.2 frames larger", "Kd_theta 40 % smaller".
-std::string WantedText(const AssumptionTest& test) {
-  const bool share = test.unit.empty();
-  const double size = std::abs(IsLogarithm(test) ? std::expm1(test.wanted) : test.wanted);
-  const double factor = share ? 100.0 : 1.0;
-  const std::string how_much = share && size > kFar ? "more than a half"
-                                                    : Rounded(factor * size, 2) + " +- " +
-                                                          Rounded(factor * test.error, 2) +
-                                                          (share              ? " %"
-                                                           : test.unit == "1" ? ""
-                                                                              : " " + test.unit);
-  return test.name + " " + how_much + (test.wanted > 0.0 ? " larger" : " smaller");
-}
-
 template <typename Test>
 const Test* Surest(const std::vector<Test>& tests) {
   const auto least = std::min_element(tests.begin(), tests.end(),
@@ -129,10 +115,20 @@ std::vector<std::string> Contradictions(const ModelVerdict& v) {
   const std::vector<const AssumptionTest*> wanted = Suspects(v);
   if (!wanted.empty()) {
     const Remedy* const remedy = FindRemedy(*wanted.front());
-    std::string all;
-    for (const AssumptionTest* test : wanted)
-      all += (all.empty() ? "" : ", or ") + WantedText(*test);
-    add("of what is taken as known, the recordings want " + all +
+    // "the lag of the pushes 0.6 +- 0.2 frames larger", "Kd_theta 40 % smaller".
+    std::vector<std::string> all;
+    for (const AssumptionTest* test : wanted) {
+      const bool share = test->unit.empty();
+      const double size = std::abs(IsLogarithm(*test) ? std::expm1(test->wanted) : test->wanted);
+      const double factor = share ? 100.0 : 1.0;
+      const std::string unit = share ? " %" : test->unit == "1" ? "" : " " + test->unit;
+      const std::string how_much =
+          share && size > kFar
+              ? "more than a half"
+              : Rounded(factor * size, 2) + " +- " + Rounded(factor * test->error, 2) + unit;
+      all.push_back(test->name + " " + how_much + (test->wanted > 0.0 ? " larger" : " smaller"));
+    }
+    add("of what is taken as known, the recordings want " + Joined(all, ", or ") +
         " (p = " + Rounded(v.p_assumptions, 2) + " after " + std::to_string(v.NumTested()) +
         " tests); " + (remedy != nullptr ? remedy->text : "try --free=" + wanted.front()->name));
   }

@@ -20,23 +20,6 @@ namespace {
 
 constexpr int kBandSamples = 100;
 
-std::string NoteOf(const FitResult& result, const PendulumRecording& recording,
-                   const Prediction& prediction) {
-  const auto fitted =
-      std::find_if(result.recordings.begin(), result.recordings.end(),
-                   [&recording](const FittedRecording& r) { return r.id == recording.id; });
-  std::string note;
-  if (fitted == result.recordings.end()) {
-    note = "not among the recordings that were fitted";
-  } else if (fitted->content_hash != recording.content_hash) {
-    note = "its files have changed since the fit";
-  }
-  if (prediction.status.ok) return note;
-  return note + (note.empty() ? "" : "; ") + std::string(prediction.status.quantity) +
-         " of person " + std::to_string(prediction.status.person) +
-         " leaves the model's domain at frame " + std::to_string(prediction.status.frame);
-}
-
 // The recordings must outlive the views.
 std::vector<RecordingView> ViewRecordings(const FitResult& result,
                                           const std::vector<Recording>& recordings, int num_threads,
@@ -49,7 +32,20 @@ std::vector<RecordingView> ViewRecordings(const FitResult& result,
     view.recording = &recordings[i];
     view.run.recording = MakePendulumRecording(recordings[i]);
     view.run.prediction = Predict(model, view.run.recording);
-    view.note = NoteOf(result, view.run.recording, view.run.prediction);
+    const auto known =
+        std::find_if(result.recordings.begin(), result.recordings.end(),
+                     [&](const FittedRecording& r) { return r.id == view.run.recording.id; });
+    if (known == result.recordings.end()) {
+      view.note = "not among the recordings that were fitted";
+    } else if (known->content_hash != view.run.recording.content_hash) {
+      view.note = "its files have changed since the fit";
+    }
+    const RolloutStatus& status = view.run.prediction.status;
+    if (!status.ok) {
+      view.note += (view.note.empty() ? "" : "; ") + std::string(status.quantity) + " of person " +
+                   std::to_string(status.person) + " leaves the model's domain at frame " +
+                   std::to_string(status.frame);
+    }
     if (view.note.empty()) fitted.push_back(view.run.recording);
   }
   BandOptions options;
@@ -160,7 +156,7 @@ Figure BodeFigure(const FrequencyResponse& response) {
 }  // namespace
 
 Report BuildReport(const FittedModel& model, const std::vector<Recording>& recordings,
-                   const BuildReportOptions& options) {
+                   int num_threads, const JobProgress& progress) {
   const FitResult& result = model.fit;
   Report report;
   report.title = "pushid: " + std::to_string(result.recordings.size()) + " recordings (" +
@@ -168,7 +164,7 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
   report.subtitle =
       "parameters, their uncertainty and their predictions; pushid " + model.provenance.version;
   ReportSource source{model};
-  source.views = ViewRecordings(result, recordings, options.num_threads, options.progress);
+  source.views = ViewRecordings(result, recordings, num_threads, progress);
   const IdentifiedModel identified = ModelOf(result);
   source.frequency = FrequencyResponses(identified, MakePendulumRecordings(recordings));
   std::vector<PropagationScore> scores;
@@ -185,7 +181,7 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
   return report;
 }
 
-std::string DetailsText(const FittedModel& model) { return ToText(BuildReport(model, {}, {})); }
+std::string DetailsText(const FittedModel& model) { return ToText(BuildReport(model, {})); }
 
 ReportSection StepSection(const ReportSource& source) {
   ReportSection section{"steps", "Who steps"};

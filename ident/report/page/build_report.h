@@ -1,6 +1,6 @@
 // ident: from a result to a report.
 //
-//   const Report report = BuildReport(result, recordings, BuildReportOptions());
+//   const Report report = BuildReport(model, recordings);
 //   WriteFileAtomically("report.html", ToPage(report));
 //
 // A new section is a function in one of the *_sections files and its name in build_report.cc.
@@ -20,15 +20,10 @@
 
 namespace pushid {
 
-struct BuildReportOptions {
-  int num_threads = 1;
-  JobProgress progress;  // over recordings
-};
-
 // recordings: those to draw; none leaves out motion, figure and the next push to record. With all
 // joints read, the figure shows skeletons too.
 Report BuildReport(const FittedModel& model, const std::vector<Recording>& recordings,
-                   const BuildReportOptions& options);
+                   int num_threads = 1, const JobProgress& progress = nullptr);
 // The sections that need no recordings, for a terminal (--details).
 std::string DetailsText(const FittedModel& model);
 
