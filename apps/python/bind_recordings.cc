@@ -281,7 +281,7 @@ std::vector<GroundPose> GroundFrom(const py::object& given) {
 }
 
 // (frames, people, 5) of fx, fy, fz in N and px, py in m; NaN: not measured.
-void AddPlates(const py::object& given, std::vector<TrackedPerson>* people) {
+void AddPlates(const py::object& given, std::vector<RecordedPerson>* people) {
   if (given.is_none()) return;
   const char* must = "(frames, 5), or (frames, people, 5), of fx, fy, fz in N and px, py in m";
   const Array array = py::cast<Array>(given);
@@ -347,7 +347,7 @@ SharedRecording FromArrays(const Array& hip, const Array& left_ankle, const Arra
                            const std::string& initial_velocity, const std::string& setting,
                            const std::string& magnitude, const std::string& condition,
                            const py::object& ground, const py::object& plates) {
-  TrackedRecording tracks;
+  Recording tracks;
   tracks.id = id;
   tracks.fps = fps;
   tracks.labels.Set(kSettingLabel, setting);
@@ -369,8 +369,10 @@ SharedRecording FromArrays(const Array& hip, const Array& left_ankle, const Arra
                                "; there are " + std::to_string(hips.size()) + " people"});
   }
   for (size_t n = 0; n < hips.size(); ++n) {
-    tracks.people.push_back({subjects.empty() ? "person " + std::to_string(n) : subjects[n],
-                             mass[n], hips[n], left[n], right[n]});
+    RecordedPerson& person = tracks.people.emplace_back();
+    person.subject_id = subjects.empty() ? "person " + std::to_string(n) : subjects[n];
+    person.mass_kg = mass[n];
+    person.hip = hips[n], person.left_ankle = left[n], person.right_ankle = right[n];
   }
   tracks.ground = GroundFrom(ground);
   AddPlates(plates, &tracks.people);

@@ -11,6 +11,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "datasets/files/number_text.h"
+
 namespace pushid {
 namespace {
 
@@ -23,7 +25,7 @@ Error SystemError(const std::string& path, const std::string& what) {
 // A name no other process and no other thread of this one uses.
 std::string TemporaryName(const std::string& target) {
   static std::atomic<unsigned> counter{0};
-  return target + ".tmp." + std::to_string(::getpid()) + "." + std::to_string(counter++);
+  return StrCat(target, ".tmp.", ::getpid(), ".", counter++);
 }
 
 }  // namespace

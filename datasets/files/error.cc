@@ -2,53 +2,43 @@
 #include "datasets/files/error.h"
 
 #include <algorithm>
+#include <map>
+
+#include "datasets/files/names.h"
 
 namespace pushid {
-namespace {
-
-constexpr size_t kNamed = 3;  // recordings of a group that it names
-
-struct Group {
-  Warning first;
-  std::vector<std::string> ids;  // empty: of no recording
-  int count = 0;
-
-  bool Holds(const Warning& warning) const {
-    if (ids.empty() || warning.recording.empty()) {
-      return ids.empty() && warning.recording.empty() && first.text == warning.text;
-    }
-    return first.of_many == warning.of_many;
-  }
-  void Add(const Warning& warning) {
-    ++count;
-    // One recording may say it of several people.
-    const std::string& id = warning.recording;
-    if (!id.empty() && std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
-  }
-  std::string Text() const {
-    if (count == 1) return first.text;
-    if (ids.size() < 2) return first.text + " (" + std::to_string(count) + " times)";
-    std::string names;
-    for (size_t i = 0; i < std::min(kNamed, ids.size()); ++i) {
-      names += (i > 0 ? ", " : "") + ids[i];
-    }
-    return "in " + std::to_string(ids.size()) + " recordings (" + names +
-           (ids.size() > kNamed ? ", ..." : "") + "): " + first.of_many;
-  }
-};
-
-}  // namespace
 
 std::vector<std::string> GroupedWarnings(const Warnings& warnings) {
+  constexpr size_t kNamed = 3;  // recordings of a group that it names
+  struct Group {
+    Warning first;
+    int count = 0;
+    std::vector<std::string> ids;  // each once: one recording may say it of several people
+  };
   std::vector<Group> groups;
+  std::map<std::pair<bool, std::string>, size_t> places;
   for (const Warning& warning : warnings) {
-    auto same = std::find_if(groups.begin(), groups.end(),
-                             [&warning](const Group& group) { return group.Holds(warning); });
-    if (same == groups.end()) same = groups.insert(same, Group{warning, {}, 0});
-    same->Add(warning);
+    const std::string& id = warning.recording;
+    const auto [place, is_new] = places.emplace(
+        std::pair(id.empty(), id.empty() ? warning.text : warning.of_many), groups.size());
+    if (is_new) groups.push_back({warning, 0, {}});
+    Group& group = groups[place->second];
+    ++group.count;
+    if (std::find(group.ids.begin(), group.ids.end(), id) == group.ids.end()) {
+      group.ids.push_back(id);
+    }
   }
   std::vector<std::string> texts;
-  for (const Group& group : groups) texts.push_back(group.Text());
+  for (const auto& [first, count, ids] : groups) {
+    if (ids.size() > 1) {
+      const size_t named = std::min(kNamed, ids.size());
+      texts.push_back(StrCat("in ", ids.size(), " recordings (",
+                             Joined({ids.begin(), ids.begin() + named}),
+                             ids.size() > named ? ", ..." : "", "): ", first.of_many));
+    } else {
+      texts.push_back(first.text + (count > 1 ? StrCat(" (", count, " times)") : ""));
+    }
+  }
   return texts;
 }
 

@@ -45,11 +45,45 @@ class [[nodiscard]] Result {
 // The outcome of something that yields nothing but may fail: nullopt means done.
 using MaybeError = std::optional<Error>;
 
-// What looks unusual but can be lived with.
+// Inside of a reader an error is thrown; its public function returns it:
+//
+//   Result<Manifest> ReadManifest(const std::string& path) {
+//     return Caught([&] { return ManifestOf(OrThrow(ReadJsonDocument(path))); });
+//   }
+template <typename T>
+T OrThrow(Result<T> result) {
+  if (!result.ok()) throw result.error();
+  return std::move(result).value();
+}
+inline void OrThrow(const MaybeError& error) {
+  if (error) throw *error;
+}
+
+// The Result of read(), or a MaybeError where it yields nothing.
+template <typename Read>
+auto Caught(const Read& read) {
+  using T = decltype(read());
+  if constexpr (std::is_void_v<T>) {
+    try {
+      read();
+      return MaybeError();
+    } catch (Error& error) {
+      return MaybeError(std::move(error));
+    }
+  } else {
+    try {
+      return Result<T>(read());
+    } catch (Error& error) {
+      return Result<T>(std::move(error));
+    }
+  }
+}
+
+// Something unusual that can be lived with.
 struct Warning {
   std::string text;            // the sentence
   std::string recording = {};  // id, where it is of one
-  std::string of_many = {};    // what it says of several: "the file has gaps"
+  std::string of_many = {};    // the sentence about several: "the file has gaps"
 
   Warning() = default;
   // A warning about no single recording.
@@ -61,8 +95,8 @@ struct Warning {
 };
 using Warnings = std::vector<Warning>;
 
-// Warnings that say the same of several recordings become one: "in 32 recordings (a, b, c, ...):
-// the file has gaps". Equal ones become one with how often. In the order of their first.
+// Warnings of which several recordings share the sentence become one: "in 32 recordings (a, b, c,
+// ...): the file has gaps"; equal ones become one with their number. In the order of their first.
 std::vector<std::string> GroupedWarnings(const Warnings& warnings);
 
 }  // namespace pushid

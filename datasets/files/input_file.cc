@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <new>
 #include <utility>
 
 #include "datasets/files/number_text.h"
@@ -98,107 +97,70 @@ MaybeError CheckEncoding(const std::string& path, std::string_view* text) {
   return std::nullopt;
 }
 
+InputFile::InputFile(const std::string& path)
+    : InputFile(path, path.empty() ? -1 : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+  if (path.empty()) throw Error{"the file name is empty"};
+  if (descriptor_ < 0 && errno == ENOENT) throw NoSuchFile(path);
+  if (descriptor_ < 0) throw Error{StrCat("cannot open it: ", std::strerror(errno)), path};
+  struct stat info {};
+  if (::fstat(descriptor_, &info) != 0) return;
+  if (S_ISDIR(info.st_mode)) {
+    const std::string manifest = path + "/manifest.json";
+    const bool there = ::access(manifest.c_str(), R_OK) == 0;
+    throw Error{"this is a folder, not a file" + (there ? "; give " + manifest : ""), path};
+  }
+  if (S_ISREG(info.st_mode)) size_ = info.st_size;
+}
+
 InputFile::~InputFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-MaybeError InputFile::Open(const std::string& path) {
-  path_ = path;
-  if (path.empty()) return Error{"the file name is empty", "", 0};
-  descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor_ < 0) {
-    if (errno == ENOENT) return NoSuchFile(path);
-    return Error{std::string("cannot open it: ") + std::strerror(errno), path, 0};
-  }
-  struct stat info {};
-  if (::fstat(descriptor_, &info) == 0) {
-    if (S_ISDIR(info.st_mode)) {
-      const std::string manifest = path + "/manifest.json";
-      const bool there = ::access(manifest.c_str(), R_OK) == 0;
-      return Error{"this is a folder, not a file" + (there ? "; give " + manifest : ""), path, 0};
-    }
-    if (S_ISREG(info.st_mode)) size_ = info.st_size;
-  }
-  return std::nullopt;
-}
-
-Result<std::size_t> InputFile::Read(char* buffer, std::size_t capacity) {
+std::size_t InputFile::Read(char* buffer, std::size_t capacity) {
   while (true) {
     const ssize_t count = ::read(descriptor_, buffer, capacity);
     if (count >= 0) return static_cast<std::size_t>(count);
-    if (errno != EINTR) {
-      return Error{std::string("cannot read it: ") + std::strerror(errno), path_, 0};
-    }
+    if (errno != EINTR) throw Error{StrCat("cannot read it: ", std::strerror(errno)), path_};
   }
 }
 
-MaybeError LineReader::Open(const std::string& path) {
-  error_ = file_.Open(path);
-  if (error_) return error_;
-  // A small file needs no large buffer; one byte more finds its end.
-  const std::int64_t size = file_.size();
-  buffer_.resize(size > 0 && size < static_cast<std::int64_t>(kBufferSize)
-                     ? static_cast<std::size_t>(size) + 1
-                     : kBufferSize);
-  return error_;
+// A small file needs no large buffer; one byte more finds its end.
+LineReader::LineReader(const std::string& path) : file_(path) {
+  const auto size = static_cast<std::size_t>(file_.size());
+  buffer_.resize(size > 0 && size < kBufferSize ? size + 1 : kBufferSize);
 }
 
 // Makes more of the file available behind the unread part; false when there is no more.
 bool LineReader::Refill() {
-  if (at_end_ || error_) return false;
-  if (begin_ > 0) {
-    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
-    end_ -= begin_;
-    begin_ = 0;
-  }
+  std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+  end_ -= std::exchange(begin_, 0);
   if (end_ == buffer_.size()) {
     if (buffer_.size() >= kLongestLine) {
-      error_ = Error{"a line is longer than 64 MB: this is not a text file of the kind expected",
-                     path(), line_number_ + 1};
-      return false;
+      throw Error{"a line is longer than 64 MB: this is not a text file of the kind expected",
+                  path(), line_number_ + 1};
     }
     buffer_.resize(2 * buffer_.size());
   }
-  Result<std::size_t> count = file_.Read(buffer_.data() + end_, buffer_.size() - end_);
-  if (!count.ok()) {
-    error_ = count.error();
-    return false;
-  }
-  if (count.value() == 0) {
-    at_end_ = true;
-    return false;
-  }
-  hash_.Add({buffer_.data() + end_, count.value()});
-  end_ += count.value();
-  return true;
+  const std::size_t count = file_.Read(buffer_.data() + end_, buffer_.size() - end_);
+  hash_.Add({buffer_.data() + end_, count});
+  end_ += count;
+  return count > 0;
 }
 
 bool LineReader::Next(std::string_view* line) {
-  std::size_t searched = 0;  // bytes of the unread part known to hold no newline
-  while (true) {
-    const char* start = buffer_.data() + begin_;
-    const std::size_t available = end_ - begin_;
-    const void* newline =
-        available > searched ? std::memchr(start + searched, '\n', available - searched) : nullptr;
-    if (newline != nullptr) {
-      const std::size_t length = static_cast<const char*>(newline) - start;
-      *line = {start, length};
-      begin_ += length + 1;
-      ended_in_newline_ = true;
-      break;
-    }
-    searched = available;
-    if (!Refill()) {
-      if (error_ || begin_ == end_) return false;
-      *line = {buffer_.data() + begin_, end_ - begin_};  // a last line without its newline
-      begin_ = end_;
-      ended_in_newline_ = false;
-      break;
-    }
+  std::size_t length = std::string::npos;
+  for (std::size_t searched = 0; length == std::string::npos;) {
+    const std::string_view unread(buffer_.data() + begin_, end_ - begin_);
+    length = unread.find('\n', searched);
+    searched = unread.size();
+    if (length == std::string::npos && !Refill()) break;
   }
+  if (length == std::string::npos && begin_ == end_) return false;
+  ended_in_newline_ = length != std::string::npos;
+  *line = {buffer_.data() + begin_, ended_in_newline_ ? length : end_ - begin_};
+  begin_ += line->size() + (ended_in_newline_ ? 1 : 0);
   if (!line->empty() && line->back() == '\r') line->remove_suffix(1);
-  if (line_number_ == 0) error_ = CheckEncoding(path(), line);
-  if (error_) return false;
+  if (line_number_ == 0) OrThrow(CheckEncoding(path(), line));
   ++line_number_;
   return true;
 }
@@ -214,43 +176,32 @@ bool LineReader::NextNonBlank(std::string_view* line) {
 constexpr std::size_t kLargestText = std::size_t{1} << 30;
 
 Result<std::string> ReadWholeFile(const std::string& path) {
-  InputFile file;
-  if (MaybeError failed = file.Open(path)) return *std::move(failed);
-  std::string text;
-  std::size_t used = 0;
-  text.resize(file.size() > 0 ? static_cast<std::size_t>(file.size()) + 1 : 1 << 12);
-  while (true) {
-    if (used >= kLargestText) return Error{"the file is too large for a text of its kind", path, 0};
-    if (used == text.size()) text.resize(2 * text.size());
-    Result<std::size_t> count = file.Read(text.data() + used, text.size() - used);
-    if (!count.ok()) return count.error();
-    if (count.value() == 0) break;
-    used += count.value();
-  }
-  text.resize(used);
-  return text;
+  return Caught([&] {
+    InputFile file(path);
+    std::string text(file.size() > 0 ? static_cast<std::size_t>(file.size()) + 1 : 1 << 12, '\0');
+    for (std::size_t used = 0; true;) {
+      if (used >= kLargestText) throw Error{"the file is too large for a text of its kind", path};
+      if (used == text.size()) text.resize(2 * text.size());
+      const std::size_t count = file.Read(text.data() + used, text.size() - used);
+      used += count;
+      if (count > 0) continue;
+      text.resize(used);
+      return text;
+    }
+  });
 }
 
-struct ContentHash::State {
-  XXH3_state_t* xxh = XXH3_createState();
-  State() {
-    if (xxh == nullptr) throw std::bad_alloc();
-    XXH3_128bits_reset(xxh);
-  }
-  ~State() { XXH3_freeState(xxh); }
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
-};
-
-ContentHash::ContentHash() : state_(std::make_unique<State>()) {}
-ContentHash::~ContentHash() = default;
+ContentHash::ContentHash()
+    : state_(XXH3_createState(), [](XXH3_state_s* state) { XXH3_freeState(state); }) {
+  XXH3_128bits_reset(state_.get());
+}
 
 void ContentHash::Add(std::string_view bytes) {
-  XXH3_128bits_update(state_->xxh, bytes.data(), bytes.size());
+  XXH3_128bits_update(state_.get(), bytes.data(), bytes.size());
 }
 
 std::string ContentHash::Hex() const {
-  const XXH128_hash_t hash = XXH3_128bits_digest(state_->xxh);
+  const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
   char hex[33];
   std::snprintf(hex, sizeof(hex), "%016llx%016llx", static_cast<unsigned long long>(hash.high64),
                 static_cast<unsigned long long>(hash.low64));
@@ -258,16 +209,15 @@ std::string ContentHash::Hex() const {
 }
 
 Result<std::string> HashFile(const std::string& path) {
-  InputFile file;
-  if (MaybeError failed = file.Open(path)) return *std::move(failed);
-  ContentHash hash;
-  std::string buffer(1 << 16, '\0');
-  while (true) {
-    Result<std::size_t> count = file.Read(buffer.data(), buffer.size());
-    if (!count.ok()) return count.error();
-    if (count.value() == 0) return hash.Hex();
-    hash.Add({buffer.data(), count.value()});
-  }
+  return Caught([&] {
+    InputFile file(path);
+    ContentHash hash;
+    std::string buffer(1 << 16, '\0');
+    while (const std::size_t count = file.Read(buffer.data(), buffer.size())) {
+      hash.Add({buffer.data(), count});
+    }
+    return hash.Hex();
+  });
 }
 
 }  // namespace pushid

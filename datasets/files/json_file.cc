@@ -24,8 +24,7 @@ class JsonWalker {
   explicit JsonWalker(const std::string& text) : text_(text) { SkipSpace(); }
 
   // Goes from the container at the current place to its member or element `key`; false, and no
-  // move, when there is none.
-  // Appends where the values start that it comes by, if wanted.
+  // move, when there is none. Appends where the values start that it comes by, if wanted.
   bool Enter(const std::string& key, std::vector<std::size_t>* starts = nullptr) {
     const std::size_t start = at_;
     const bool object = At() == '{';
@@ -56,12 +55,8 @@ class JsonWalker {
 
   // Follows "/recordings/3/fps" as far as it leads.
   void Follow(const std::string& pointer) {
-    std::size_t begin = pointer.empty() ? std::string::npos : 1;
-    while (begin != std::string::npos) {
-      const std::size_t slash = pointer.find('/', begin);
-      if (!Enter(pointer.substr(begin, slash == std::string::npos ? slash : slash - begin))) return;
-      begin = slash == std::string::npos ? slash : slash + 1;
-    }
+    const std::vector<std::string> keys = SplitList(pointer, '/');
+    for (std::size_t i = 1; i < keys.size() && Enter(keys[i]); ++i) continue;
   }
 
   std::size_t position() const { return at_; }
@@ -97,12 +92,13 @@ class JsonWalker {
   std::size_t at_ = 0;
 };
 
-// Line and column (1-based, in bytes) of text[position].
-void SetPlace(const std::string& text, std::size_t position, Error* error) {
+// The error at line and column (1-based, in bytes) of text[position].
+Error ErrorIn(const std::string& text, std::size_t position, Error error) {
   position = std::min(position, text.size());
-  error->line = 1 + static_cast<int>(std::count(text.begin(), text.begin() + position, '\n'));
+  error.line = 1 + static_cast<int>(std::count(text.begin(), text.begin() + position, '\n'));
   const std::size_t newline = position == 0 ? std::string::npos : text.rfind('\n', position - 1);
-  error->column = static_cast<int>(position - (newline == std::string::npos ? 0 : newline + 1)) + 1;
+  error.column = static_cast<int>(position - (newline == std::string::npos ? 0 : newline + 1)) + 1;
+  return error;
 }
 
 // Position of the opening bracket that nests too deep; npos when none does.
@@ -165,30 +161,8 @@ Error SyntaxError(const std::string& path, const std::string& text) {
   }
   if (message.rfind("parse error at line", 0) == 0)
     message = message.substr(message.find(": ") + 2);
-  Error error{"this is not valid JSON: " + message + SyntaxHint(text, finder.last_read), path, 0};
-  SetPlace(text, finder.last_read, &error);
-  return error;
-}
-
-using ObjectKeys = std::vector<const MissingKey*>;  // of one object
-
-// The missing keys by object, in the order in which objects first lack something.
-std::vector<ObjectKeys> ByObject(const std::vector<MissingKey>& missing) {
-  std::vector<ObjectKeys> objects;
-  std::map<std::string, std::size_t> index;  // by label
-  for (const MissingKey& key : missing) {
-    const auto [at, is_new] = index.emplace(key.label, objects.size());
-    if (is_new) objects.emplace_back();
-    objects[at->second].push_back(&key);
-  }
-  return objects;
-}
-
-// "a, b and c are missing"
-std::string KeysText(const ObjectKeys& keys) {
-  std::vector<std::string> names;
-  for (const MissingKey* key : keys) names.push_back(key->key);
-  return Listed(names, "and") + (keys.size() == 1 ? " is missing" : " are missing");
+  return ErrorIn(text, finder.last_read,
+                 {"this is not valid JSON: " + message + SyntaxHint(text, finder.last_read), path});
 }
 
 }  // namespace
@@ -196,9 +170,7 @@ std::string KeysText(const ObjectKeys& keys) {
 Error JsonDocument::ErrorAt(const std::string& pointer, std::string message) const {
   JsonWalker walker(text);
   walker.Follow(pointer);
-  Error error{std::move(message), path, 0};
-  SetPlace(text, walker.position(), &error);
-  return error;
+  return ErrorIn(text, walker.position(), {std::move(message), path});
 }
 
 std::vector<int> JsonDocument::ElementLines(const std::string& pointer) const {
@@ -218,28 +190,23 @@ std::vector<int> JsonDocument::ElementLines(const std::string& pointer) const {
 }
 
 Result<JsonDocument> ReadJsonDocument(const std::string& path) {
-  Result<std::string> text = ReadWholeFile(path);
-  if (!text.ok()) return text.error();
-  JsonDocument document;
-  document.path = path;
-  std::string_view content = text.value();
-  if (MaybeError other = CheckEncoding(path, &content)) return *std::move(other);
-  document.text = content;
-  if (std::all_of(document.text.begin(), document.text.end(), IsSpace)) {
-    return Error{"the file is empty", path, 0};
-  }
-  if (const std::size_t deep = TooDeepAt(document.text); deep != std::string::npos) {
-    Error error{"the JSON nests deeper than " + std::to_string(kDeepestNesting) + " levels", path,
-                0};
-    SetPlace(document.text, deep, &error);
-    return error;
-  }
-  try {
-    document.content = nlohmann::ordered_json::parse(document.text);
-  } catch (const nlohmann::json::exception&) {
-    return SyntaxError(path, document.text);
-  }
-  return document;
+  return Caught([&] {
+    const std::string bytes = OrThrow(ReadWholeFile(path));
+    std::string_view text = bytes;
+    OrThrow(CheckEncoding(path, &text));
+    JsonDocument document{path, std::string(text), {}};
+    if (std::all_of(text.begin(), text.end(), IsSpace)) throw Error{"the file is empty", path};
+    if (const std::size_t deep = TooDeepAt(document.text); deep != std::string::npos) {
+      throw ErrorIn(document.text, deep,
+                    {StrCat("the JSON nests deeper than ", kDeepestNesting, " levels"), path});
+    }
+    try {
+      document.content = nlohmann::ordered_json::parse(document.text);
+    } catch (const nlohmann::json::exception&) {
+      throw SyntaxError(path, document.text);
+    }
+    return document;
+  });
 }
 
 MaybeError WriteJson(const std::string& path, const nlohmann::ordered_json& content, int indent) {
@@ -256,19 +223,28 @@ std::string SpeltOtherwise(const nlohmann::ordered_json& object, const std::stri
 
 std::string MissingText(const std::vector<MissingKey>& missing) {
   constexpr std::size_t kMostObjects = 8;
-  const std::vector<ObjectKeys> objects = ByObject(missing);
+  std::vector<std::vector<const MissingKey*>> objects;  // in the order of the first key they lack
+  std::map<std::string, std::size_t> index;             // by label
+  for (const MissingKey& key : missing) {
+    const auto [at, is_new] = index.emplace(key.label, objects.size());
+    if (is_new) objects.emplace_back();
+    objects[at->second].push_back(&key);
+  }
   std::string text;
   std::set<std::string> explained;  // each key once
   for (std::size_t i = 0; i < objects.size() && i < kMostObjects; ++i) {
-    const ObjectKeys& keys = objects[i];
-    text += (i == 0 ? "" : "; ") + keys[0]->label + ": " + KeysText(keys);
-    for (const MissingKey* key : keys) {
+    std::vector<std::string> names;
+    std::string explanation;
+    for (const MissingKey* key : objects[i]) {
+      names.push_back(key->key);
       if (!explained.insert(key->key).second) continue;
-      text += "; " + (keys.size() == 1 ? "it" : key->key) + " must be " + key->what;
+      explanation += "; " + (objects[i].size() == 1 ? "it" : key->key) + " must be " + key->what;
     }
+    text += (i == 0 ? "" : "; ") + objects[i][0]->label + ": " + Listed(names, "and") +
+            (names.size() == 1 ? " is missing" : " are missing") + explanation;
   }
   if (objects.size() > kMostObjects) {
-    text += "; and " + std::to_string(objects.size() - kMostObjects) + " more lack keys";
+    text += StrCat("; and ", objects.size() - kMostObjects, " more lack keys");
   }
   return text;
 }

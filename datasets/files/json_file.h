@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -59,6 +60,18 @@ inline std::string Shown(const nlohmann::ordered_json& value) {
   return Quoted(value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
+// A list of texts, whole numbers or numbers; nullopt: the value is none.
+template <typename T>
+std::optional<std::vector<T>> ListOf(const nlohmann::ordered_json& value) {
+  const auto fits = [](const nlohmann::ordered_json& item) {
+    return std::is_same_v<T, std::string> ? item.is_string()
+           : std::is_integral_v<T>        ? item.is_number_integer()
+                                          : item.is_number();
+  };
+  if (!value.is_array() || !std::all_of(value.begin(), value.end(), fits)) return std::nullopt;
+  return value.get<std::vector<T>>();
+}
+
 // Takes typed values out of one JSON object and remembers every required key that is missing and
 // the first other thing that is wrong, so that a reader lists its keys one after the other and asks
 // once at the end.
@@ -91,8 +104,7 @@ class JsonFields {
     return document_.ErrorAt(first.pointer + "/" + first.key, MissingText(missing_));
   }
   bool failed() const { return error_ || !missing_.empty(); }
-  // Something else than missing keys.
-  bool is_wrong() const { return error_.has_value(); }
+  bool is_wrong() const { return error_.has_value(); }  // by more than missing keys
 
   void Fail(const std::string& key, const std::string& problem) {
     if (error_) return;
@@ -106,6 +118,12 @@ class JsonFields {
   void Add(const JsonFields& inner) {
     missing_.insert(missing_.end(), inner.missing_.begin(), inner.missing_.end());
     Fail(inner.error_);
+  }
+
+  // The fields of a value that stands at `place` ("ground", "pushes/0") inside this object.
+  JsonFields Inside(const nlohmann::ordered_json& value, const std::string& place,
+                    const std::string& label) const {
+    return {document_, value, Pointer(place), label_ + ", " + label};
   }
 
   // The keys that were asked for, which are those that its reader knows.
@@ -155,6 +173,9 @@ class JsonFields {
 
   double OptionalNumber(const char* key, const std::string& what, double fallback) {
     return Has(key) ? Number(key, what) : fallback;
+  }
+  std::optional<double> NumberIfAny(const char* key, const std::string& what) {
+    return Has(key) ? std::optional(Number(key, what)) : std::nullopt;
   }
   // A whole number in [lowest, highest].
   int Whole(const char* key, const std::string& what, int lowest, int highest) {

@@ -14,8 +14,7 @@ std::string ListOfNames(const std::vector<std::string>& names, std::size_t most,
                         const std::string& plural) {
   if (names.size() <= most) return Joined(names);
   const std::string text = Joined({names.begin(), names.begin() + most});
-  return text + ", ... (" + std::to_string(names.size()) + (plural.empty() ? "" : " ") + plural +
-         ")";
+  return StrCat(text, ", ... (", names.size(), plural.empty() ? "" : " ", plural, ")");
 }
 
 Error UnknownNameError(const std::string& path, const std::string& noun,
@@ -80,7 +79,7 @@ std::string Joined(const std::vector<std::string>& texts, const std::string& bet
 
 std::string CountText(std::size_t number, const std::string& noun, const std::string& plural) {
   const std::string several = plural.empty() ? noun + "s" : plural;
-  return std::to_string(number) + " " + (number == 1 ? noun : several);
+  return StrCat(number, " ", number == 1 ? noun : several);
 }
 
 std::vector<std::string> SplitList(const std::string& text, char separator) {

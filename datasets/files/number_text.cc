@@ -145,16 +145,10 @@ char SeparatorOf(std::string_view names) {
 }
 
 const char* SeparatorName(char separator) {
-  switch (separator) {
-    case '\t':
-      return "tabs";
-    case ';':
-      return "semicolons";
-    case ',':
-      return "commas";
-    default:
-      return "blanks";
-  }
+  return separator == '\t'  ? "tabs"
+         : separator == ';' ? "semicolons"
+         : separator == ',' ? "commas"
+                            : "blanks";
 }
 
 TableCells::TableCells(std::string_view row, char separator) : rest_(row), separator_(separator) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "datasets/files/error.h"
@@ -32,6 +33,22 @@ std::string NumberProblem(std::string_view token);
 
 // `text` in single quotes, shortened and with unprintable bytes replaced, fit for a message.
 std::string Quoted(std::string_view text);
+
+// Texts, characters and whole numbers one after the other.
+template <typename... Parts>
+std::string StrCat(const Parts&... parts) {
+  std::string text;
+  const auto append = [&text](const auto& part) {
+    using Part = std::decay_t<decltype(part)>;
+    if constexpr (std::is_integral_v<Part> && !std::is_same_v<Part, char>) {
+      text += std::to_string(part);
+    } else {
+      text += part;
+    }
+  };
+  (append(parts), ...);
+  return text;
+}
 
 // Appends the shortest text that reads back to the same double; never -0 or a locale's comma.
 void AppendDouble(double value, std::string* out);

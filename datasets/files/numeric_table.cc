@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <unordered_set>
 
 #include "datasets/files/atomic_file.h"
@@ -45,34 +46,24 @@ void TurnTimesToSeconds(TableFormat format, NumericTable* table) {
   for (double& t : time) t /= 1000.0;
 }
 
-bool IsMissing(std::string_view cell) {
-  return cell.empty() || EqualsIgnoringCase(cell, "nan") || EqualsIgnoringCase(cell, "n/a");
-}
-
 class TableReader {
  public:
-  TableReader(const std::string& path, TableFormat format, const TableReadOptions& options)
-      : format_(format), options_(options) {
+  TableReader(const std::string& path, TableFormat format, const Choice& choose)
+      : format_(format), choose_(choose), reader_(path) {
     table_.path = path;
   }
 
-  Result<NumericTable> Read() {
-    if (MaybeError failed = reader_.Open(table_.path)) return *std::move(failed);
+  NumericTable Read() {
     std::string_view line;
-    if (format_ == TableFormat::kStorage) {
-      if (MaybeError failed = ReadHead()) return *std::move(failed);
-    }
-    if (!NextRow(&line)) return Ended("the line of column names");
-    if (MaybeError failed = ReadNames(line)) return *std::move(failed);
-    while (NextRow(&line)) {
-      if (MaybeError failed = ReadRow(line)) return *std::move(failed);
-    }
-    if (reader_.error()) return *reader_.error();
+    if (format_ == TableFormat::kStorage) ReadHead();
+    if (!NextRow(&line)) throw Ended("the line of column names");
+    ReadNames(line);
+    while (NextRow(&line)) ReadRow(line);
     const int rows = table_.num_rows();
-    if (rows == 0) return reader_.ErrorHere("the table has no rows");
+    if (rows == 0) throw reader_.ErrorHere("the table has no rows");
     if (announced_rows_ >= 0 && rows != announced_rows_) {
-      return reader_.ErrorHere("the header declares " + std::to_string(announced_rows_) +
-                               " rows, the file has " + std::to_string(rows));
+      throw reader_.ErrorHere(
+          StrCat("the header declares ", announced_rows_, " rows, the file has ", rows));
     }
     TurnTimesToSeconds(format_, &table_);
     table_.content_hash = reader_.HashHex();
@@ -80,9 +71,8 @@ class TableReader {
   }
 
  private:
-  Error Ended(const char* where) const {
-    if (reader_.error()) return *reader_.error();
-    return reader_.ErrorHere(std::string("the file ends where ") + where +
+  Error Ended(const std::string& where) const {
+    return reader_.ErrorHere("the file ends where " + where +
                              " should be: it is empty or truncated");
   }
 
@@ -93,86 +83,68 @@ class TableReader {
     return false;
   }
 
-  MaybeError ReadHead() {
-    std::string_view line;
-    while (reader_.NextNonBlank(&line)) {
+  void ReadHead() {
+    for (std::string_view line; reader_.NextNonBlank(&line);) {
       line = Trimmed(line);
-      if (EqualsIgnoringCase(line, "endheader")) return std::nullopt;
+      if (EqualsIgnoringCase(line, "endheader")) return;
       // name=value, or "name value" in old files.
-      const std::size_t split = line.find_first_of("= \t");
+      const std::size_t split = std::min(line.find_first_of("= \t"), line.size());
       const std::string_view key = line.substr(0, split);
-      const std::string_view value =
-          split == std::string_view::npos ? "" : Trimmed(line.substr(split + 1));
-      if (EqualsIgnoringCase(key, "inDegrees"))
-        table_.in_degrees = EqualsIgnoringCase(value, "yes");
-      if (EqualsIgnoringCase(key, "DataType") && !EqualsIgnoringCase(value, "double")) {
-        return reader_.ErrorHere("DataType is " + Quoted(value) +
-                                 ": its cells hold several numbers; flatten the table (OpenSim: "
-                                 "TimeSeriesTableVec3.flatten()) and export it again");
+      const std::string_view value = Trimmed(line.substr(std::min(split + 1, line.size())));
+      const auto is = [key](const char* name) { return EqualsIgnoringCase(key, name); };
+      if (is("inDegrees")) table_.in_degrees = EqualsIgnoringCase(value, "yes");
+      if (is("DataType") && !EqualsIgnoringCase(value, "double")) {
+        throw reader_.ErrorHere("DataType is " + Quoted(value) +
+                                ": its cells hold several numbers; flatten the table (OpenSim: "
+                                "TimeSeriesTableVec3.flatten()) and export it again");
       }
-      const bool rows = EqualsIgnoringCase(key, "nRows") || EqualsIgnoringCase(key, "datarows");
-      const bool columns =
-          EqualsIgnoringCase(key, "nColumns") || EqualsIgnoringCase(key, "datacolumns");
-      if (!rows && !columns) continue;
-      std::int64_t number = 0;
+      const bool rows = is("nRows") || is("datarows");
+      if (!rows && !is("nColumns") && !is("datacolumns")) continue;
+      std::int64_t& number = rows ? announced_rows_ : announced_columns_;
       if (!ParseInteger(value, &number) || number < 0) {
-        return reader_.ErrorHere(std::string(key) + " must be a whole number, not " +
-                                 Quoted(value));
+        throw reader_.ErrorHere(std::string(key) + " must be a whole number, not " + Quoted(value));
       }
-      (rows ? announced_rows_ : announced_columns_) = number;
     }
-    return Ended("endheader");
+    throw Ended("endheader");
   }
 
-  MaybeError ReadNames(std::string_view line) {
+  void ReadNames(std::string_view line) {
     separator_ = format_ == TableFormat::kCsv ? SeparatorOf(line) : kBlanks;
-    TableCells cells(line, separator_);
     std::unordered_set<std::string> seen;
-    for (std::string_view cell; cells.Next(&cell);) {
+    for (const std::string_view cell : CellsOf(line, separator_)) {
       const std::string name(cell);
       double number = 0.0;
       if (ParseDouble(name, &number)) {
-        return reader_.ErrorHere("a column is called " + Quoted(name) +
-                                 ": the first line must hold the names of the columns");
+        throw reader_.ErrorHere("a column is called " + Quoted(name) +
+                                ": the first line must hold the names of the columns");
       }
       if (!name.empty() && !seen.insert(name).second) {
-        return reader_.ErrorHere("two columns are called " + Quoted(name));
+        throw reader_.ErrorHere("two columns are called " + Quoted(name));
       }
       table_.names.push_back(name);
-      if (table_.names.size() > kMostColumns)
-        return reader_.ErrorHere("there are too many columns");
+      if (table_.names.size() > kMostColumns) throw reader_.ErrorHere("there are too many columns");
     }
     // A separator at the end of every line makes a last column without a name.
-    if (table_.names.size() > 1 && table_.names.back().empty()) {
-      table_.names.pop_back();
-      trailing_ = true;
+    trailing_ = table_.names.size() > 1 && table_.names.back().empty();
+    if (trailing_) table_.names.pop_back();
+    const auto columns = static_cast<std::int64_t>(table_.names.size());
+    if (announced_columns_ >= 0 && announced_columns_ != columns) {
+      throw reader_.ErrorHere(
+          StrCat("the header declares ", announced_columns_, " columns, but there are ", columns));
     }
-    if (announced_columns_ >= 0 &&
-        announced_columns_ != static_cast<std::int64_t>(table_.names.size())) {
-      return reader_.ErrorHere("the header declares " + std::to_string(announced_columns_) +
-                               " columns, but there are " + std::to_string(table_.names.size()));
-    }
-    MaybeError wrong = Choose();
-    if (wrong && wrong->line == 0) wrong->line = reader_.line_number();
-    return wrong;
-  }
-
-  MaybeError Choose() {
-    if (options_.choose) {
-      Result<std::vector<int>> chosen = options_.choose(table_.names);
-      if (!chosen.ok()) return chosen.error();
-      table_.chosen = std::move(chosen.value());
-    } else {
-      for (std::size_t i = 0; i < table_.names.size(); ++i) {
-        table_.chosen.push_back(static_cast<int>(i));
-      }
+    table_.chosen.resize(table_.names.size());
+    std::iota(table_.chosen.begin(), table_.chosen.end(), 0);
+    try {
+      if (choose_) table_.chosen = choose_(table_.names);
+    } catch (Error& error) {
+      if (error.line == 0) error.line = reader_.line_number();
+      throw;
     }
     table_.data.resize(table_.chosen.size());
     row_.resize(table_.names.size());
-    return std::nullopt;
   }
 
-  MaybeError ReadRow(std::string_view line) {
+  void ReadRow(std::string_view line) {
     // A row that is cut behind a tab would have an empty cell.
     const bool tabs =
         format_ == TableFormat::kStorage && reader_.ended_in_newline() &&
@@ -182,25 +154,24 @@ class TableReader {
     for (std::string_view cell; cells.Next(&cell); ++count) {
       if (count == row_.size()) {
         if (trailing_ && cell.empty() && !cells.Next(&cell)) break;
-        return WrongLength(count + 1);
+        throw WrongLength(count + 1);
       }
-      if (IsMissing(cell)) {
+      if (cell.empty() || EqualsIgnoringCase(cell, "nan") || EqualsIgnoringCase(cell, "n/a")) {
         row_[count] = std::numeric_limits<double>::quiet_NaN();
       } else if (!ParseDouble(cell, &row_[count])) {
         // A row separated otherwise than the names is one long cell, and no number either.
         const std::string problem = table_.names[count] + ": " + NumberProblem(cell) + kMissingCell;
         while (++count < row_.size()) {
-          if (!cells.Next(&cell)) return WrongLength(count);
+          if (!cells.Next(&cell)) throw WrongLength(count);
         }
-        return reader_.ErrorHere(problem);
+        throw reader_.ErrorHere(problem);
       }
     }
-    if (count != row_.size()) return WrongLength(count);
+    if (count != row_.size()) throw WrongLength(count);
     for (std::size_t i = 0; i < table_.chosen.size(); ++i) {
       table_.data[i].push_back(row_[table_.chosen[i]]);
     }
-    if (options_.keep_lines) table_.lines.push_back(reader_.line_number());
-    return std::nullopt;
+    table_.lines.push_back(reader_.line_number());
   }
 
   // count: no more than one beyond the columns.
@@ -209,14 +180,14 @@ class TableReader {
     return reader_.ErrorHere(
         "the row has " +
         (count > row_.size() ? "more than the " + columns + " values of the columns"
-                             : std::to_string(count) + " values, not " + columns) +
+                             : StrCat(count, " values, not ", columns)) +
         ", separated by " + SeparatorName(separator_) +
         " as in the line of names: the file is truncated or damaged" +
         (separator_ == kBlanks ? "" : ", or a name with a separator in it is not in quotes"));
   }
 
   const TableFormat format_;
-  const TableReadOptions& options_;
+  const Choice& choose_;
   LineReader reader_;
   NumericTable table_;
   char separator_ = ',';
@@ -233,8 +204,8 @@ const std::vector<double>* NumericTable::Column(int index) const {
 }
 
 Result<NumericTable> ReadNumericTable(const std::string& path, TableFormat format,
-                                      const TableReadOptions& options) {
-  return TableReader(path, format, options).Read();
+                                      const Choice& choose) {
+  return Caught([&] { return TableReader(path, format, choose).Read(); });
 }
 
 std::string PlainName(std::string_view name) {
@@ -256,14 +227,11 @@ int FindTimeColumn(const std::vector<std::string>& names, const std::string& wan
   return -1;
 }
 
-namespace {
-
-int LineOf(const NumericTable& table, int row) {
-  return row < static_cast<int>(table.lines.size()) ? table.lines[static_cast<std::size_t>(row)]
-                                                    : 0;
+double UpperMedian(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
-
-}  // namespace
 
 Result<double> EvenTimeStep(const NumericTable& table, int time_column) {
   const std::vector<double>* time = table.Column(time_column);
@@ -276,27 +244,23 @@ Result<double> EvenTimeStep(const NumericTable& table, int time_column) {
   bool even = true;
   for (int i = 1; i < rows; ++i) {
     const double now = (*time)[i] - (*time)[i - 1];
-    if (!std::isfinite(now)) return Error{"a time is missing", table.path, LineOf(table, i)};
+    if (!std::isfinite(now)) return Error{"a time is missing", table.path, table.lines[i]};
     steps.push_back(now);
     even = even && now > 0.0 && std::fabs(now - step) <= slack;
   }
   if (even) return step;
   // From the mean every row is off where some are missing; the one that is farthest from the median
   // tells where.
-  std::vector<double> sorted = steps;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double usual = *middle;
-  const auto nearer = [usual](double a, double b) {
+  const double usual = UpperMedian(steps);
+  const auto at = std::max_element(steps.begin(), steps.end(), [usual](double a, double b) {
     return std::fabs(a - usual) < std::fabs(b - usual);
-  };
-  const auto at = std::max_element(steps.begin(), steps.end(), nearer);
+  });
   const int row = 1 + static_cast<int>(at - steps.begin());
   return Error{*at <= 0.0 ? "the times do not ascend: " + Rounded((*time)[row], 9) +
                                 " s comes after " + Rounded((*time)[row - 1], 9) + " s"
                           : "the times do not ascend in even steps: " + Rounded(*at) + " s where " +
                                 Rounded(usual) + " s is usual; resample the file",
-               table.path, LineOf(table, row)};
+               table.path, table.lines[row]};
 }
 
 MaybeError WriteNumericTable(const std::string& path, TableFormat format,
@@ -308,9 +272,8 @@ MaybeError WriteNumericTable(const std::string& path, TableFormat format,
   }
   std::string text;
   if (storage) {
-    text = "pushid\nversion=1\nnRows=" + std::to_string(table.num_rows()) +
-           "\nnColumns=" + std::to_string(table.names.size()) +
-           "\ninDegrees=" + (table.in_degrees ? "yes" : "no") + "\nendheader\n";
+    text = StrCat("pushid\nversion=1\nnRows=", table.num_rows(), "\nnColumns=", table.names.size(),
+                  "\ninDegrees=", table.in_degrees ? "yes" : "no", "\nendheader\n");
   }
   const std::size_t columns = table.names.size();
   for (std::size_t i = 0; i < columns; ++i) {

@@ -31,7 +31,7 @@ struct NumericTable {
   std::vector<std::string> names;         // of every column
   std::vector<int> chosen;                // the columns read: indices into names
   std::vector<std::vector<double>> data;  // [chosen][row]
-  std::vector<int> lines;                 // of each row, for messages; only when asked for
+  std::vector<int> lines;                 // of each row, for messages
   std::string content_hash;
 
   int num_rows() const { return data.empty() ? 0 : static_cast<int>(data[0].size()); }
@@ -39,16 +39,14 @@ struct NumericTable {
   const std::vector<double>* Column(int index) const;
 };
 
-struct TableReadOptions {
-  // Which columns to keep, from all names; unset: all.
-  std::function<Result<std::vector<int>>(const std::vector<std::string>& names)> choose;
-  bool keep_lines = false;
-};
+// The indices of what is to be kept, chosen from the names of all columns, points or joints; throws
+// an Error where it is not there. Unset: all of them.
+using Choice = std::function<std::vector<int>(const std::vector<std::string>& names)>;
 
 // Errors name the line: no names, a name twice, rows of another length, text that is no number, a
 // storage file with other than the announced rows or columns.
 Result<NumericTable> ReadNumericTable(const std::string& path, TableFormat format,
-                                      const TableReadOptions& options = {});
+                                      const Choice& choose = {});
 
 // The letters and digits of a name in lower case: "Force (N)" is "forcen". A minus before it and
 // letters of other alphabets are kept, so that "-Fx" and "Time (µs)" are no other names.
@@ -57,6 +55,9 @@ std::string PlainName(std::string_view name);
 // The column that holds the time: `wanted` when given, otherwise time, t, time_s, "Time (ms)", ...;
 // -1: none.
 int FindTimeColumn(const std::vector<std::string>& names, const std::string& wanted);
+
+// The value in the middle; of an even number of them, the upper one. values: at least one.
+double UpperMedian(std::vector<double> values);
 
 // Steps of a time column in s, or an Error where it does not ascend in even steps (1 %).
 Result<double> EvenTimeStep(const NumericTable& table, int time_column);

@@ -24,37 +24,28 @@ struct BvhHeader {
 
 bool IsBrace(char c) { return c == '{' || c == '}'; }
 
-// "joint 'Hips' lists Xposition twice"; empty where no channel is.
-std::string ListedTwice(const BvhJoint& joint) {
-  for (std::size_t i = 0; i < joint.channels.size(); ++i) {
-    const auto at = joint.channels.begin() + static_cast<std::ptrdiff_t>(i);
-    if (std::find(joint.channels.begin(), at, *at) == at) continue;
-    return "joint " + Quoted(joint.name) + " lists " + NameOf(*at) + " twice";
-  }
-  return "";
-}
-
 // Reads tokens across lines, with a stack of open braces, which no depth of nesting overflows.
 class HierarchyParser {
  public:
   explicit HierarchyParser(LineReader* reader) : reader_(*reader) {}
 
-  Result<BvhSkeleton> Parse() {
+  BvhSkeleton Parse() {
     if (!EqualsIgnoringCase(Next(), "HIERARCHY")) {
-      if (reader_.error()) return *reader_.error();
-      return reader_.ErrorHere("this is not a BVH file: it does not start with HIERARCHY");
+      Fail("this is not a BVH file: it does not start with HIERARCHY");
     }
     while (true) {
       const std::string_view token = Next();
-      if (token.empty()) {
-        if (reader_.error()) return *reader_.error();
-        return reader_.ErrorHere(
-            "the file ends inside the hierarchy, before MOTION: it is truncated");
-      }
-      const bool complete = EqualsIgnoringCase(token, "MOTION");
-      if (MaybeError failed = complete ? CheckComplete() : Take(token)) return *failed;
-      if (complete) return std::move(skeleton_);
+      if (token.empty()) Fail("the file ends inside the hierarchy, before MOTION: it is truncated");
+      if (EqualsIgnoringCase(token, "MOTION")) break;
+      Take(token);
     }
+    if (!open_.empty()) {
+      Fail(StrCat("MOTION is inside the hierarchy: ", open_.size(), " closing } missing"));
+    }
+    if (skeleton_.joints.empty()) Fail("the hierarchy has no ROOT");
+    if (skeleton_.num_channels() == 0) Fail("no joint has any channels");
+    if (!Trimmed(rest_).empty()) Fail(Quoted(Trimmed(rest_)) + " follows MOTION");
+    return std::move(skeleton_);
   }
 
  private:
@@ -63,24 +54,23 @@ class HierarchyParser {
     bool end_site = false, has_offset = false, has_channels = false;
   };
 
-  MaybeError Take(std::string_view token) {
+  [[noreturn]] void Fail(const std::string& problem) const { throw reader_.ErrorHere(problem); }
+
+  void Take(std::string_view token) {
     if (EqualsIgnoringCase(token, "ROOT")) return OpenJoint(true);
     if (EqualsIgnoringCase(token, "JOINT")) return OpenJoint(false);
     if (EqualsIgnoringCase(token, "End")) return OpenEndSite();
     if (EqualsIgnoringCase(token, "OFFSET")) return ParseOffset();
     if (EqualsIgnoringCase(token, "CHANNELS")) return ParseChannels();
     if (token == "}") return Close();
-    return reader_.ErrorHere(
-        Quoted(token) +
-        " is not expected in the hierarchy (ROOT, JOINT, End Site, OFFSET, CHANNELS, {, }, "
-        "MOTION are)");
+    Fail(Quoted(token) +
+         " is not expected in the hierarchy (ROOT, JOINT, End Site, OFFSET, CHANNELS, {, }, "
+         "MOTION are)");
   }
 
   // The next token of the file, a brace being one of its own; empty at the end.
   std::string_view Next() {
-    while (true) {
-      while (!rest_.empty() && IsBlank(rest_.front())) rest_.remove_prefix(1);
-      if (!rest_.empty()) break;
+    while ((rest_ = Trimmed(rest_)).empty()) {
       if (!reader_.Next(&rest_)) return {};
     }
     std::size_t length = 0;
@@ -90,79 +80,64 @@ class HierarchyParser {
     return token;
   }
 
-  MaybeError ExpectOpeningBrace(const std::string& what) {
+  void ExpectOpeningBrace(const std::string& what) {
     const std::string_view token = Next();
-    if (token == "{") return std::nullopt;
-    return reader_.ErrorHere(
-        "a { must follow " + what +
-        (token.empty() ? "; the file is truncated" : ", not " + Quoted(token)));
+    if (token == "{") return;
+    Fail("a { must follow " + what +
+         (token.empty() ? "; the file is truncated" : ", not " + Quoted(token)));
   }
 
-  MaybeError OpenJoint(bool root) {
-    const std::size_t brace = rest_.find_first_of("{}");
+  void OpenJoint(bool root) {
+    const std::size_t brace = std::min(rest_.find_first_of("{}"), rest_.size());
     const std::string name(Trimmed(rest_.substr(0, brace)));
-    rest_ = brace == std::string_view::npos ? std::string_view() : rest_.substr(brace);
-    if (name.empty()) return reader_.ErrorHere("a joint has no name");
+    rest_.remove_prefix(brace);
+    if (name.empty()) Fail("a joint has no name");
     if (root != open_.empty()) {
-      return reader_.ErrorHere(root ? "ROOT " + name + " is inside another joint; is a } missing?"
-                                    : "JOINT " + name + " is outside of any ROOT");
+      Fail(root ? "ROOT " + name + " is inside another joint; is a } missing?"
+                : "JOINT " + name + " is outside of any ROOT");
     }
-    if (!root && open_.back().end_site) {
-      return reader_.ErrorHere("JOINT " + name + " is inside an End Site");
-    }
+    if (!root && open_.back().end_site) Fail("JOINT " + name + " is inside an End Site");
     if (!names_.insert(name).second) {
-      return reader_.ErrorHere("two joints are called " + Quoted(name) + "; names must be unique");
+      Fail("two joints are called " + Quoted(name) + "; names must be unique");
     }
-    BvhJoint joint;
-    joint.name = name;
-    joint.parent = root ? -1 : open_.back().joint;
+    const int parent = root ? -1 : open_.back().joint;
     open_.push_back({static_cast<int>(skeleton_.joints.size())});
-    skeleton_.joints.push_back(std::move(joint));
-    return ExpectOpeningBrace("the joint's name");
+    BvhJoint& joint = skeleton_.joints.emplace_back();
+    joint.name = name;
+    joint.parent = parent;
+    ExpectOpeningBrace("the joint's name");
   }
 
-  MaybeError OpenEndSite() {
-    if (!EqualsIgnoringCase(Next(), "Site")) return reader_.ErrorHere("Site must follow End");
-    if (open_.empty() || open_.back().end_site) {
-      return reader_.ErrorHere("an End Site is outside of any joint");
-    }
+  void OpenEndSite() {
+    if (!EqualsIgnoringCase(Next(), "Site")) Fail("Site must follow End");
+    if (open_.empty() || open_.back().end_site) Fail("an End Site is outside of any joint");
     open_.push_back({open_.back().joint, true});
-    return ExpectOpeningBrace("End Site");
+    ExpectOpeningBrace("End Site");
   }
 
-  MaybeError ParseOffset() {
-    if (open_.empty()) return reader_.ErrorHere("an OFFSET is outside of any joint");
+  void ParseOffset() {
+    if (open_.empty()) Fail("an OFFSET is outside of any joint");
     Eigen::Vector3d offset;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (double& length : offset) {
       const std::string_view token = Next();
-      if (!ParseDouble(token, &offset[axis])) {
-        return reader_.ErrorHere("OFFSET takes three numbers: " + NumberProblem(token));
-      }
+      if (!ParseDouble(token, &length)) Fail("OFFSET takes three numbers: " + NumberProblem(token));
     }
     OpenBrace& open = open_.back();
-    if (open.has_offset) return reader_.ErrorHere("a second OFFSET for the same joint");
+    if (open.has_offset) Fail("a second OFFSET for the same joint");
     open.has_offset = true;
     BvhJoint& joint = skeleton_.joints[open.joint];
-    if (open.end_site) {
-      joint.end_sites.push_back(offset);
-    } else {
-      joint.offset = offset;
-    }
-    return std::nullopt;
+    (open.end_site ? joint.end_sites.emplace_back() : joint.offset) = offset;
   }
 
-  MaybeError ParseChannels() {
-    if (open_.empty() || open_.back().end_site) {
-      return reader_.ErrorHere("CHANNELS are outside of any joint");
-    }
+  void ParseChannels() {
+    if (open_.empty() || open_.back().end_site) Fail("CHANNELS are outside of any joint");
     BvhJoint& joint = skeleton_.joints[open_.back().joint];
-    if (open_.back().has_channels) return reader_.ErrorHere("a second CHANNELS for the same joint");
+    if (open_.back().has_channels) Fail("a second CHANNELS for the same joint");
     open_.back().has_channels = true;
     const std::string_view count_token = Next();
     std::int64_t count = 0;
     if (!ParseInteger(count_token, &count) || count < 0 || count > 6) {
-      return reader_.ErrorHere("CHANNELS takes a number from 0 to 6 first, not " +
-                               Quoted(count_token));
+      Fail("CHANNELS takes a number from 0 to 6 first, not " + Quoted(count_token));
     }
     constexpr auto kNames = Names(BvhChannel{});
     for (std::int64_t i = 0; i < count; ++i) {
@@ -171,55 +146,39 @@ class HierarchyParser {
         return EqualsIgnoringCase(token, named.name);
       });
       if (row == kNames.end()) {
-        return reader_.ErrorHere("joint " + Quoted(joint.name) + ": " + Quoted(token) +
-                                 " is not a channel; " + std::to_string(count) +
-                                 " of Xposition, Yposition, Zposition, Xrotation, Yrotation, "
-                                 "Zrotation must follow");
+        Fail(StrCat(
+            "joint ", Quoted(joint.name), ": ", Quoted(token), " is not a channel; ", count,
+            " of Xposition, Yposition, Zposition, Xrotation, Yrotation, Zrotation must follow"));
+      }
+      if (std::count(joint.channels.begin(), joint.channels.end(), row->value) > 0) {
+        Fail("joint " + Quoted(joint.name) + " lists " + row->name + " twice");
       }
       joint.channels.push_back(row->value);
-      if (const std::string twice = ListedTwice(joint); !twice.empty()) {
-        return reader_.ErrorHere(twice);
-      }
     }
-    return std::nullopt;
   }
 
-  MaybeError Close() {
-    if (open_.empty()) return reader_.ErrorHere("a } has no matching {");
+  void Close() {
+    if (open_.empty()) Fail("a } has no matching {");
     const OpenBrace closed = open_.back();
     open_.pop_back();
-    if (closed.has_offset) return std::nullopt;
-    return reader_.ErrorHere(
+    if (closed.has_offset) return;
+    Fail(
         (closed.end_site ? "an End Site" : "joint " + Quoted(skeleton_.joints[closed.joint].name)) +
         " has no OFFSET");
   }
 
-  MaybeError CheckComplete() {
-    if (!open_.empty()) {
-      return reader_.ErrorHere("MOTION is inside the hierarchy: " + std::to_string(open_.size()) +
-                               " closing } missing");
-    }
-    if (skeleton_.joints.empty()) return reader_.ErrorHere("the hierarchy has no ROOT");
-    if (skeleton_.num_channels() == 0) return reader_.ErrorHere("no joint has any channels");
-    if (!Trimmed(rest_).empty()) {
-      return reader_.ErrorHere(Quoted(Trimmed(rest_)) + " follows MOTION");
-    }
-    return std::nullopt;
-  }
-
   LineReader& reader_;
-  std::string_view rest_;  // what is left of the current line
+  std::string_view rest_;  // of the current line
   BvhSkeleton skeleton_;
   std::vector<OpenBrace> open_;
   std::unordered_set<std::string> names_;
 };
 
-// A line "<words>: <value>"; an Error when the words differ.
-Result<std::string> ReadField(LineReader* reader, const std::string& words) {
+// The value of a line "<words>: <value>".
+std::string ReadField(LineReader* reader, const std::string& words) {
   std::string_view line;
   if (!reader->NextNonBlank(&line)) {
-    if (reader->error()) return *reader->error();
-    return reader->ErrorHere("the file ends where '" + words + ":' should be: it is truncated");
+    throw reader->ErrorHere("the file ends where '" + words + ":' should be: it is truncated");
   }
   const std::size_t colon = line.find(':');
   std::string key;
@@ -228,7 +187,7 @@ Result<std::string> ReadField(LineReader* reader, const std::string& words) {
     key += NextToken(&rest);
   }
   if (colon == std::string_view::npos || !EqualsIgnoringCase(key, words)) {
-    return reader->ErrorHere("'" + words + ":' is expected here, not " + Quoted(Trimmed(line)));
+    throw reader->ErrorHere("'" + words + ":' is expected here, not " + Quoted(Trimmed(line)));
   }
   return std::string(Trimmed(line.substr(colon + 1)));
 }
@@ -247,30 +206,21 @@ std::string FrameTimeProblem(double frame_time_s) {
          " frames per second";
 }
 
-// Opens the file and leaves `reader` before the first row. Keywords are matched whatever their
-// case; line breaks inside the hierarchy are free; a joint's name is the rest of its line and may
-// contain spaces.
-Result<BvhHeader> ReadBvhHeader(const std::string& path, LineReader* reader) {
-  if (MaybeError failed = reader->Open(path)) return *std::move(failed);
-  Result<BvhSkeleton> skeleton = HierarchyParser(reader).Parse();
-  if (!skeleton.ok()) return skeleton.error();
-  BvhHeader header;
-  header.skeleton = std::move(skeleton.value());
-
-  Result<std::string> frames = ReadField(reader, "Frames");
-  if (!frames.ok()) return frames.error();
-  if (!ParseInteger(frames.value(), &header.num_frames) || header.num_frames < 1 ||
+// Leaves `reader` before the first row. Keywords are matched whatever their case; line breaks
+// inside the hierarchy are free; a joint's name is the rest of its line and may contain spaces.
+BvhHeader ReadBvhHeader(LineReader* reader) {
+  BvhHeader header{HierarchyParser(reader).Parse()};
+  const std::string frames = ReadField(reader, "Frames");
+  if (!ParseInteger(frames, &header.num_frames) || header.num_frames < 1 ||
       header.num_frames > std::numeric_limits<int>::max()) {
-    return reader->ErrorHere("Frames: must be a whole number of 1 or more, not " +
-                             Quoted(frames.value()));
+    throw reader->ErrorHere("Frames: must be a whole number of 1 or more, not " + Quoted(frames));
   }
-  Result<std::string> frame_time = ReadField(reader, "Frame Time");
-  if (!frame_time.ok()) return frame_time.error();
-  if (!ParseDouble(frame_time.value(), &header.frame_time_s)) {
-    return reader->ErrorHere("Frame Time: " + NumberProblem(frame_time.value()));
+  const std::string frame_time = ReadField(reader, "Frame Time");
+  if (!ParseDouble(frame_time, &header.frame_time_s)) {
+    throw reader->ErrorHere("Frame Time: " + NumberProblem(frame_time));
   }
   const std::string problem = FrameTimeProblem(header.frame_time_s);
-  if (!problem.empty()) return reader->ErrorHere(problem);
+  if (!problem.empty()) throw reader->ErrorHere(problem);
   return header;
 }
 
@@ -286,47 +236,18 @@ void RotateAbout(int axis, double radians, Eigen::Matrix3d* rotation) {
   rotation->col(j) = c * column_j - s * column_i;
 }
 
-std::string SkeletonProblem(const BvhSkeleton& skeleton) {
-  std::unordered_set<std::string> names;
-  std::vector<int> path;  // from the root to the joint before
-  for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
-    const BvhJoint& joint = skeleton.joints[i];
-    if (joint.name.empty() || joint.name != Trimmed(joint.name) ||
-        joint.name.find_first_of("{}\n\r") != std::string::npos) {
-      return "the joint name " + Quoted(joint.name) + " cannot be written";
-    }
-    if (!names.insert(joint.name).second) {
-      return "two joints are called " + Quoted(joint.name);
-    }
-    while (!path.empty() && path.back() != joint.parent) path.pop_back();
-    if (path.empty() && joint.parent != -1) {
-      return "joint " + Quoted(joint.name) + " is not in depth-first order";
-    }
-    path.push_back(static_cast<int>(i));
-    if (!joint.offset.allFinite()) return "the offset of " + Quoted(joint.name) + " is not finite";
-    for (const Eigen::Vector3d& end_site : joint.end_sites) {
-      if (!end_site.allFinite()) return "an end site of " + Quoted(joint.name) + " is not finite";
-    }
-    if (const std::string twice = ListedTwice(joint); !twice.empty()) return twice;
-  }
-  if (skeleton.num_channels() == 0) return "no joint has any channels";
-  return "";
-}
-
+// Why a motion is not written; empty: it is.
 std::string MotionProblem(const BvhMotion& motion) {
-  const std::string problem = SkeletonProblem(motion.skeleton);
-  if (!problem.empty()) return problem;
-  if (motion.values.empty() || motion.values.size() % motion.skeleton.num_channels() != 0) {
-    return "there are " + std::to_string(motion.values.size()) + " values for " +
-           std::to_string(motion.skeleton.num_channels()) + " channels per frame";
+  const std::size_t channels = motion.skeleton.num_channels(), values = motion.values.size();
+  if (channels == 0) return "no joint has any channels";
+  if (values == 0 || values % channels != 0) {
+    return StrCat("there are ", values, " values for ", channels, " channels per frame");
   }
-  for (std::size_t i = 0; i < motion.values.size(); ++i) {
-    if (!std::isfinite(motion.values[i])) {
-      return "a value of frame " + std::to_string(i / motion.skeleton.num_channels()) +
-             " is not finite";
-    }
-  }
-  return FrameTimeProblem(motion.frame_time_s);
+  const auto bad = std::find_if_not(motion.values.begin(), motion.values.end(),
+                                    [](double value) { return std::isfinite(value); });
+  if (bad == motion.values.end()) return FrameTimeProblem(motion.frame_time_s);
+  const std::size_t frame = static_cast<std::size_t>(bad - motion.values.begin()) / channels;
+  return StrCat("a value of frame ", frame, " is not finite");
 }
 
 std::string HierarchyText(const BvhSkeleton& skeleton) {
@@ -351,7 +272,7 @@ std::string HierarchyText(const BvhSkeleton& skeleton) {
     line(depth, (depth == 0 ? "ROOT " : "JOINT ") + joint.name);
     line(depth, "{");
     offset(depth + 1, joint.offset);
-    std::string channels = "CHANNELS " + std::to_string(joint.channels.size());
+    std::string channels = StrCat("CHANNELS ", joint.channels.size());
     for (BvhChannel channel : joint.channels) channels += " " + NameOf(channel);
     line(depth + 1, channels);
     std::vector<Eigen::Vector3d> ends = joint.end_sites;
@@ -376,7 +297,7 @@ std::string ChannelName(const BvhSkeleton& skeleton, int index) {
     if (index < count) return joint.name + " " + NameOf(joint.channels[index]);
     index -= count;
   }
-  return "value " + std::to_string(index);
+  return StrCat("value ", index);
 }
 
 // The end of a plain decimal number (-digits.digits of at most 32 characters, so finite); null for
@@ -395,21 +316,21 @@ const char* PastPlainNumber(const char* at, const char* end) {
 }
 
 // Fills values[0 .. count) from a row of numbers; those that are not used may stay as they were.
-MaybeError ParseFrame(const LineReader& reader, std::string_view line, const BvhSkeleton& skeleton,
-                      const std::vector<bool>& used, double* values) {
+void ParseFrame(const LineReader& reader, std::string_view line, const BvhSkeleton& skeleton,
+                const std::vector<bool>& used, double* values) {
   const int count = static_cast<int>(used.size());
   const char* at = line.data();
   const char* const end = at + line.size();
   for (int i = 0;; ++i) {
     while (at != end && IsBlank(*at)) ++at;
+    if (at == end && i == count) return;
     if (at == end) {
-      if (i == count) return std::nullopt;
-      return reader.ErrorHere("the row has " + std::to_string(i) + " numbers, not " +
-                              std::to_string(count) + ": the file is truncated or damaged");
+      throw reader.ErrorHere(
+          StrCat("the row has ", i, " numbers, not ", count, ": the file is truncated or damaged"));
     }
     if (i == count) {
-      return reader.ErrorHere("the row has more than the " + std::to_string(count) +
-                              " numbers that the hierarchy's channels ask for");
+      throw reader.ErrorHere(StrCat("the row has more than the ", count,
+                                    " numbers that the hierarchy's channels ask for"));
     }
     if (const char* past = used[i] ? nullptr : PastPlainNumber(at, end)) {
       at = past;
@@ -424,41 +345,30 @@ MaybeError ParseFrame(const LineReader& reader, std::string_view line, const Bvh
     std::string_view rest(at, static_cast<std::size_t>(end - at));
     const std::string_view token = NextToken(&rest);
     if (!ParseDouble(token, &values[i])) {
-      return reader.ErrorHere("number " + std::to_string(i + 1) + " of the row (" +
-                              ChannelName(skeleton, i) + "): " + NumberProblem(token));
+      throw reader.ErrorHere(StrCat("number ", i + 1, " of the row (", ChannelName(skeleton, i),
+                                    "): ", NumberProblem(token)));
     }
     at += token.size();
   }
 }
 
-// Calls take_row(values) for every row; checks that there are as many as announced. used: which
-// values take_row needs; whole_row: the row, from 0, of which it needs all; -1: none.
+// Calls take_row(values) for every row; checks that there are as many as announced. used: the
+// values that take_row needs.
 template <typename TakeRow>
-MaybeError ReadFrames(LineReader* reader, const BvhHeader& header, const std::vector<bool>& used,
-                      int whole_row, const TakeRow& take_row) {
-  const std::vector<bool> everything(used.size(), true);
+void ReadFrames(LineReader* reader, const BvhHeader& header, const std::vector<bool>& used,
+                const TakeRow& take_row) {
   std::vector<double> values(used.size());
   std::int64_t rows = 0;
-  std::string_view line;
-  while (reader->NextNonBlank(&line)) {
-    if (rows == header.num_frames) {
-      return reader->ErrorHere("wrong frame count: Frames: is " +
-                               std::to_string(header.num_frames) + ", but here is one row more");
-    }
-    if (MaybeError failed = ParseFrame(*reader, line, header.skeleton,
-                                       rows == whole_row ? everything : used, values.data())) {
-      return failed;
-    }
+  const std::string wrong = StrCat("wrong frame count: Frames: is ", header.num_frames, ", but ");
+  for (std::string_view line; reader->NextNonBlank(&line); ++rows) {
+    if (rows == header.num_frames) throw reader->ErrorHere(wrong + "here is one row more");
+    ParseFrame(*reader, line, header.skeleton, used, values.data());
     take_row(values);
-    ++rows;
   }
-  if (reader->error()) return reader->error();
   if (rows < header.num_frames) {
-    return reader->ErrorHere("wrong frame count: Frames: is " + std::to_string(header.num_frames) +
-                             ", but the file ends after " + std::to_string(rows) +
-                             ": it is truncated, or the count is wrong");
+    throw reader->ErrorHere(
+        StrCat(wrong, "the file ends after ", rows, ": it is truncated, or the count is wrong"));
   }
-  return std::nullopt;
 }
 
 // The announced number of frames, but no more than a file of this size can hold: memory is not
@@ -597,82 +507,54 @@ void BvhKinematics::Positions(const double* row, Eigen::Vector3d* positions) {
 
 MaybeError WriteBvh(const std::string& path, const BvhMotion& motion) {
   const std::string problem = MotionProblem(motion);
-  if (!problem.empty()) return Error{"the motion cannot be written: " + problem, path, 0};
+  if (!problem.empty()) return Error{"the motion cannot be written: " + problem, path};
   AtomicFile file;
   if (MaybeError failed = file.Open(path)) return failed;
   file.Append(HierarchyText(motion.skeleton));
-  file.Append("MOTION\nFrames: " + std::to_string(motion.num_frames()) +
-              "\nFrame Time: " + DoubleText(motion.frame_time_s) + "\n");
+  file.Append(StrCat("MOTION\nFrames: ", motion.num_frames(),
+                     "\nFrame Time: ", DoubleText(motion.frame_time_s), "\n"));
   const std::size_t channels = motion.skeleton.num_channels();
-  std::string row;
   for (std::size_t i = 0; i < motion.values.size(); ++i) {
-    const bool last = (i + 1) % channels == 0;
-    AppendDouble(motion.values[i], &row);
-    row += last ? '\n' : ' ';
-    if (!last) continue;
-    file.Append(row);
-    row.clear();
+    file.Append(DoubleText(motion.values[i]) + ((i + 1) % channels == 0 ? '\n' : ' '));
   }
   return file.Commit();
 }
 
 Result<double> ReadBvhFrameTime(const std::string& path) {
-  LineReader reader;
-  const Result<BvhHeader> header = ReadBvhHeader(path, &reader);
-  if (!header.ok()) return header.error();
-  return header.value().frame_time_s;
-}
-
-Result<BvhMotion> ReadBvh(const std::string& path) {
-  LineReader reader;
-  Result<BvhHeader> header = ReadBvhHeader(path, &reader);
-  if (!header.ok()) return header.error();
-
-  BvhMotion motion;
-  motion.frame_time_s = header.value().frame_time_s;
-  motion.values.reserve(FramesToReserve(reader, header.value()) *
-                        header.value().skeleton.num_channels());
-  const std::vector<bool> everything(header.value().skeleton.num_channels(), true);
-  MaybeError failed =
-      ReadFrames(&reader, header.value(), everything, -1, [&motion](const auto& values) {
-        motion.values.insert(motion.values.end(), values.begin(), values.end());
-      });
-  if (failed) return *std::move(failed);
-  motion.skeleton = std::move(header.value().skeleton);
-  return motion;
+  return Caught([&] {
+    LineReader reader(path);
+    return ReadBvhHeader(&reader).frame_time_s;
+  });
 }
 
 Result<BvhPositions> ReadBvhPositions(const std::string& path, const BvhPositionOptions& options) {
-  LineReader reader;
-  Result<BvhHeader> header = ReadBvhHeader(path, &reader);
-  if (!header.ok()) return header.error();
-
-  BvhPositions result;
-  result.frame_time_s = header.value().frame_time_s;
-  result.joints.resize(header.value().skeleton.joints.size());
-  std::iota(result.joints.begin(), result.joints.end(), 0);
-  if (options.choose_joints) {
-    Result<std::vector<int>> chosen = options.choose_joints(header.value().skeleton);
-    if (!chosen.ok()) return chosen.error();
-    result.joints = std::move(chosen.value());
-  }
-  result.positions.resize(result.joints.size());
-  for (auto& track : result.positions) track.reserve(FramesToReserve(reader, header.value()));
-
-  BvhKinematics kinematics(header.value().skeleton, options.metres_per_unit, result.joints);
-  int frame = 0;
-  std::vector<Eigen::Vector3d> positions(result.joints.size());
-  const auto take_row = [&](const std::vector<double>& values) {
-    kinematics.Positions(values.data(), positions.data());
-    if (frame++ == options.kept_frame) result.kept_values = values;
-    for (std::size_t i = 0; i < positions.size(); ++i) result.positions[i].push_back(positions[i]);
-  };
-  MaybeError failed =
-      ReadFrames(&reader, header.value(), kinematics.UsedValues(), options.kept_frame, take_row);
-  if (failed) return *std::move(failed);
-  result.skeleton = std::move(header.value().skeleton);
-  result.content_hash = reader.HashHex();
-  return result;
+  return Caught([&] {
+    LineReader reader(path);
+    BvhHeader header = ReadBvhHeader(&reader);
+    BvhPositions result;
+    result.frame_time_s = header.frame_time_s;
+    result.joints.resize(header.skeleton.joints.size());
+    std::iota(result.joints.begin(), result.joints.end(), 0);
+    if (options.choose_joints) result.joints = options.choose_joints(header.skeleton);
+    result.positions.resize(result.joints.size());
+    for (auto& track : result.positions) track.reserve(FramesToReserve(reader, header));
+    BvhKinematics kinematics(header.skeleton, options.metres_per_unit, result.joints);
+    std::vector<Eigen::Vector3d> positions(result.joints.size());
+    const auto take_row = [&](const std::vector<double>& values) {
+      kinematics.Positions(values.data(), positions.data());
+      if (options.keep_values) {
+        result.values.insert(result.values.end(), values.begin(), values.end());
+      }
+      for (std::size_t i = 0; i < positions.size(); ++i) {
+        result.positions[i].push_back(positions[i]);
+      }
+    };
+    const std::vector<bool> all(header.skeleton.num_channels(), true);
+    ReadFrames(&reader, header, options.keep_values ? all : kinematics.UsedValues(), take_row);
+    result.skeleton = std::move(header.skeleton);
+    result.content_hash = reader.HashHex();
+    return result;
+  });
 }
 
 }  // namespace pushid

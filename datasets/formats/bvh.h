@@ -10,9 +10,8 @@
 //   precedes
 //     rotation wherever the position channels stand in the list.
 //
-//   Result<BvhMotion> motion = ReadBvh("walk.bvh");                            // everything, raw
-//   Result<BvhPositions> p = ReadBvhPositions("walk.bvh");                     // of all joints, m
-//   MaybeError failed = WriteBvh("copy.bvh", motion.value());
+//   Result<BvhPositions> p = ReadBvhPositions("walk.bvh");  // of all joints, m
+//   MaybeError failed = WriteBvh("copy.bvh", motion);
 //
 // The readers are strict: a truncated file, a row too many or too few, a number that is not one,
 // NaN, infinity, an unknown channel or a duplicate name is an Error with file and line.
@@ -77,9 +76,6 @@ struct BvhMotion {
   int num_frames() const;
 };
 
-// Reads everything, including every channel value (8 bytes per number).
-Result<BvhMotion> ReadBvh(const std::string& path);
-
 // Seconds; no row is read.
 Result<double> ReadBvhFrameTime(const std::string& path);
 
@@ -87,10 +83,9 @@ struct BvhPositionOptions {
   // Metres in one of the file's lengths.
   double metres_per_unit = MetresPer(LengthUnit::kMillimetre);
   // Called once with the skeleton, it returns indices of the joints whose positions are wanted, in
-  // the order wanted; unset: all joints.
-  std::function<Result<std::vector<int>>(const BvhSkeleton&)> choose_joints;
-  // The frame whose channel values are kept as they stand; -1: none.
-  int kept_frame = -1;
+  // the order wanted, or throws an Error; unset: all joints.
+  std::function<std::vector<int>(const BvhSkeleton&)> choose_joints;
+  bool keep_values = false;  // of all channels, as they stand: 8 bytes per number
 };
 
 // World positions of chosen joints.
@@ -99,21 +94,20 @@ struct BvhPositions {
   double frame_time_s = 0.0;
   std::vector<int> joints;                              // joint index of each entry of `positions`
   std::vector<std::vector<Eigen::Vector3d>> positions;  // [chosen joint][frame], metres
-  std::vector<double> kept_values;                      // of the kept frame, in file order
+  std::vector<double> values;                           // of all frames, as in BvhMotion
   std::string content_hash;                             // XXH3-128 of the file, hex
 
   int num_frames() const { return positions.empty() ? 0 : static_cast<int>(positions[0].size()); }
 };
 
-// Reads row by row and keeps nothing but the chosen positions, so memory is 24 bytes per chosen
-// joint and frame whatever the file's size.
+// Reads row by row and keeps nothing but what is chosen: 24 bytes per joint and frame whatever the
+// file's size.
 Result<BvhPositions> ReadBvhPositions(const std::string& path,
                                       const BvhPositionOptions& options = {});
 
 // Writes `motion` as it stands, atomically. Numbers are the shortest that read back to the same
-// double. An inconsistent motion (wrong number of values,
-// joints not depth first, NaN, no frames, frame time out of range) is an Error. A leaf without an
-// end site gets one at its own place, which other programs insist on.
+// double. A wrong number of values, NaN, no frames or a frame time out of range is an Error. A leaf
+// without an end site gets one at its own place, which other programs insist on.
 MaybeError WriteBvh(const std::string& path, const BvhMotion& motion);
 
 // Forward kinematics of a BVH skeleton: world positions from one row of channel values.

@@ -18,7 +18,7 @@ namespace {
 
 // "at byte 1234: ..." of the file at `path`.
 Error C3dError(const std::string& path, std::size_t at, const std::string& message) {
-  return {"at byte " + std::to_string(at) + ": " + message, path};
+  return {StrCat("at byte ", at, ": ", message), path};
 }
 
 // Fixed-length strings, filled up with blanks or zeros.
@@ -36,24 +36,24 @@ class ParameterReader {
  public:
   ParameterReader(const std::string& path, const C3dBytes& bytes) : path_(path), bytes_(bytes) {}
 
-  Result<C3dParameters> Read(std::size_t at) {
+  C3dParameters Read(std::size_t at) {
     while (true) {
-      if (!bytes_.Has(at, 2)) return Cut(at);
+      Need(at, 2);
       const int name_length = std::abs(static_cast<int>(bytes_.Signed(at)));
       const int group = bytes_.Signed(at + 1);
       if (name_length == 0) break;
       const std::size_t distance_at = at + 2 + name_length;
-      if (!bytes_.Has(distance_at, 2)) return Cut(distance_at);
+      Need(distance_at, 2);
       const std::string name = WithoutPadding(bytes_.Text(at + 2, name_length));
       if (group < 0) {
         group_names_[-group] = name;
-      } else if (MaybeError failed = ReadParameter(name, group, distance_at + 2)) {
-        return *std::move(failed);
+      } else {
+        ReadParameter(name, group, distance_at + 2);
       }
       const std::size_t distance = bytes_.Word(distance_at);
       if (distance == 0) break;
       if (distance < 2) {
-        return C3dError(
+        throw C3dError(
             path_, distance_at,
             "the next parameter begins inside this one (" + name + "): the file is damaged");
       }
@@ -62,9 +62,9 @@ class ParameterReader {
     for (std::size_t i = 0; i < parameters_.size(); ++i) {
       const auto found = group_names_.find(groups_[i]);
       if (found == group_names_.end()) {
-        return Error{"parameter " + Quoted(parameters_[i].name) + " belongs to group " +
-                         std::to_string(groups_[i]) + ", which the file does not have",
-                     path_};
+        throw Error{StrCat("parameter ", Quoted(parameters_[i].name), " belongs to group ",
+                           groups_[i], ", which the file does not have"),
+                    path_};
       }
       parameters_[i].group = found->second;
     }
@@ -72,58 +72,43 @@ class ParameterReader {
   }
 
  private:
-  Error Cut(std::size_t at) const {
-    return C3dError(path_, at, "the file ends inside its parameters: it is truncated or damaged");
+  void Need(std::size_t at, std::size_t count) const {
+    if (bytes_.Has(at, count)) return;
+    throw C3dError(path_, at, "the file ends inside its parameters: it is truncated or damaged");
   }
 
-  MaybeError ReadParameter(const std::string& name, int group, std::size_t at) {
-    if (!bytes_.Has(at, 2)) return Cut(at);
+  void ReadParameter(const std::string& name, int group, std::size_t at) {
+    Need(at, 2);
     C3dParameter parameter;
     parameter.name = name;
     const int type = bytes_.Signed(at);
     if (type != -1 && type != 1 && type != 2 && type != 4) {
-      return C3dError(path_, at,
-                      "parameter " + Quoted(name) + " has the type " + std::to_string(type) +
-                          "; -1, 1, 2 and 4 are known");
+      throw C3dError(
+          path_, at,
+          StrCat("parameter ", Quoted(name), " has the type ", type, "; -1, 1, 2 and 4 are known"));
     }
-    parameter.type = static_cast<C3dType>(type);
     const int num_dimensions = bytes_.Byte(at + 1);
     at += 2;
-    if (!bytes_.Has(at, num_dimensions)) return Cut(at);
+    Need(at, num_dimensions);
     std::size_t count = 1;
     for (int i = 0; i < num_dimensions; ++i) {
       parameter.dimensions.push_back(bytes_.Byte(at + i));
       count *= bytes_.Byte(at + i);
-      if (count > bytes_.size()) return Cut(at);
+      Need(0, count);
     }
     at += num_dimensions;
-    if (!bytes_.Has(at, count * std::abs(type))) return Cut(at);
-    ReadValues(at, count, &parameter);
+    Need(at, count * std::abs(type));
+    const std::size_t length = parameter.dimensions.empty() ? 1 : parameter.dimensions[0];
+    for (std::size_t i = 0; type == -1 && length > 0 && i < count / length; ++i) {
+      parameter.texts.push_back(WithoutPadding(bytes_.Text(at + i * length, length)));
+    }
+    for (std::size_t i = 0; type != -1 && i < count; ++i) {
+      parameter.numbers.push_back(type == 1   ? bytes_.Byte(at + i)
+                                  : type == 2 ? bytes_.Integer(at + 2 * i)
+                                              : bytes_.Real(at + 4 * i));
+    }
     parameters_.push_back(std::move(parameter));
     groups_.push_back(group);
-    return std::nullopt;
-  }
-
-  void ReadValues(std::size_t at, std::size_t count, C3dParameter* parameter) const {
-    if (parameter->type == C3dType::kText) {
-      const std::size_t length = parameter->dimensions.empty() ? 1 : parameter->dimensions[0];
-      for (std::size_t i = 0; length > 0 && i < count / length; ++i) {
-        parameter->texts.push_back(WithoutPadding(bytes_.Text(at + i * length, length)));
-      }
-      return;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      switch (parameter->type) {
-        case C3dType::kByte:
-          parameter->numbers.push_back(bytes_.Byte(at + i));
-          break;
-        case C3dType::kInteger:
-          parameter->numbers.push_back(bytes_.Integer(at + 2 * i));
-          break;
-        default:
-          parameter->numbers.push_back(bytes_.Real(at + 4 * i));
-      }
-    }
   }
 
   const std::string& path_;
@@ -140,17 +125,11 @@ std::vector<Entry> Joined(const C3dParameters& parameters, std::string_view grou
   std::vector<Entry> joined;
   for (int number = 1;; ++number) {
     const C3dParameter* parameter =
-        parameters.Find(group, number == 1 ? name : name + std::to_string(number));
+        parameters.Find(group, number == 1 ? name : StrCat(name, number));
     if (parameter == nullptr) return joined;
     const std::vector<Entry>& part = parameter->*entries;
     joined.insert(joined.end(), part.begin(), part.end());
   }
-}
-
-double FromIeee(std::uint32_t bits) {
-  float value;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
 }
 
 double FromVax(std::uint32_t bits) {
@@ -169,7 +148,7 @@ constexpr char kPlatforms[] = "FORCE_PLATFORM";
 // Counts stored in a signed integer although they reach 65535.
 double Unsigned(double value) { return value < 0 ? value + 65536.0 : value; }
 
-// What the file says of one platform; of what it does not say, NaN, or no channels, or type 0.
+// One platform as the file has it; NaN, no channels or type 0 stand for what it does not say.
 C3dPlatform ReadPlatform(const C3dParameters& parameters, int index, int stride) {
   const auto number = [&parameters](const char* name, int at) {
     return parameters.Number(kPlatforms, name, at, std::numeric_limits<double>::quiet_NaN());
@@ -206,9 +185,7 @@ std::vector<C3dEvent> ReadC3dEvents(const C3dParameters& parameters, const C3dBy
   const bool four_letters = bytes.Word(298) == kShortLabels;
   const int count = std::min<int>(bytes.Word(300), kHeaderEvents);
   for (int i = 0; four_letters && i < count; ++i) {
-    const std::string_view label = bytes.Text(396 + 4 * i, 4);
-    events.push_back(
-        {bytes.Real(304 + 4 * i), std::string(Trimmed(label.substr(0, label.find('\0')))), ""});
+    events.push_back({bytes.Real(304 + 4 * i), WithoutPadding(bytes.Text(396 + 4 * i, 4)), ""});
   }
   return events;
 }
@@ -243,17 +220,6 @@ constexpr std::size_t kReal = 4, kRealsOfPose = 17, kPoseColumns = 4;
 constexpr int kMostSegments = 32767;
 constexpr double kNoRotation = 0.1;  // of a determinant from 1
 
-int Whole(const C3dFile& file, const char* name, int lowest, int highest, int fallback) {
-  return file.parameters.Whole(kGroup, name, 0, lowest, highest, fallback);
-}
-
-// "pelvis_4X4" -> "pelvis".
-std::string SegmentName(const std::string& label) {
-  constexpr std::string_view kEnding = "_4X4";
-  const bool has = label.size() > kEnding.size() && EndsWith(label, kEnding);
-  return has ? label.substr(0, label.size() - kEnding.size()) : label;
-}
-
 // The origin of the pose that stands at byte `at`; NaN where it was not seen.
 Eigen::Vector3d Origin(const C3dBytes& bytes, std::size_t at) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -268,7 +234,9 @@ Eigen::Vector3d Origin(const C3dBytes& bytes, std::size_t at) {
   return seen ? Eigen::Vector3d(pose.topRightCorner<3, 1>()) : Eigen::Vector3d(kNaN, kNaN, kNaN);
 }
 
-bool HasC3dRotations(const C3dFile& file) { return Whole(file, "USED", 0, kMostSegments, 0) > 0; }
+int SegmentsOf(const C3dFile& file) {
+  return file.parameters.Whole(kGroup, "USED", 0, 0, kMostSegments, 0);
+}
 
 // The poses of segments in a C3D file (group ROTATION, as Theia3D and Visual3D write them).
 //
@@ -278,34 +246,37 @@ bool HasC3dRotations(const C3dFile& file) { return Whole(file, "USED", 0, kMostS
 // where the segment was not seen.
 //
 // Adds the origins as points, by the names of ROTATION:LABELS without Theia3D's ending _4X4; of
-// several poses in a frame the first. What is no rotation was not seen. Errors: poses that the file
-// ends before.
-MaybeError AddC3dRotations(const C3dBytes& bytes, C3dFile* file) {
-  const std::size_t segments = Whole(*file, "USED", 0, kMostSegments, 0);
-  if (segments == 0) return std::nullopt;
+// several poses in a frame the first. A matrix that is no rotation was not seen. Errors: poses that
+// the file ends before.
+void AddC3dRotations(const C3dBytes& bytes, C3dFile* file) {
+  constexpr std::string_view kEnding = "_4X4";
+  const std::size_t segments = SegmentsOf(*file);
+  if (segments == 0) return;
   const double block = file->parameters.Number(kGroup, "DATA_START", 0, 0.0);
-  if (block == 0.0) return C3dError(file->path, 0, "ROTATION:DATA_START is missing");
+  if (block == 0.0) throw C3dError(file->path, 0, "ROTATION:DATA_START is missing");
   const std::size_t begin = (static_cast<std::size_t>(Unsigned(block)) - 1) * kC3dBlock;
-  const std::size_t frame_size =
-      kReal * kRealsOfPose * segments * Whole(*file, "RATIO", 1, kMostSegments, 1);
+  const std::size_t frame_size = kReal * kRealsOfPose * segments *
+                                 file->parameters.Whole(kGroup, "RATIO", 0, 1, kMostSegments, 1);
   const std::size_t frames = file->num_frames();
   if (!bytes.Has(begin, frames * frame_size)) {
-    return C3dError(file->path, bytes.size(),
-                    "the file ends before the last pose of " + std::to_string(frames) +
-                        " frames (group ROTATION): it is truncated; export it again");
+    throw C3dError(file->path, bytes.size(),
+                   StrCat("the file ends before the last pose of ", frames,
+                          " frames (group ROTATION): it is truncated; export it again"));
   }
   std::vector<std::string> names = file->parameters.Texts(kGroup, "LABELS");
   names.resize(segments);
   for (std::size_t s = 0; s < segments; ++s) {
-    file->point_names.push_back(names[s].empty() ? "segment_" + std::to_string(s + 1)
-                                                 : SegmentName(names[s]));
+    std::string name = names[s].empty() ? StrCat("segment_", s + 1) : names[s];
+    if (name.size() > kEnding.size() && EndsWith(name, kEnding)) {
+      name.resize(name.size() - kEnding.size());
+    }
+    file->point_names.push_back(std::move(name));
     std::vector<Eigen::Vector3d> track;
     for (std::size_t t = 0; t < frames; ++t) {
       track.push_back(Origin(bytes, begin + t * frame_size + s * kReal * kRealsOfPose));
     }
     file->points.push_back(std::move(track));
   }
-  return std::nullopt;
 }
 
 constexpr int kMagic = 0x50;
@@ -319,55 +290,50 @@ class Reader {
     file_.path = path;
   }
 
-  Result<C3dFile> Read() {
-    if (MaybeError failed = ReadSections()) return *std::move(failed);
-    if (MaybeError failed = ReadHeader()) return *std::move(failed);
+  C3dFile Read() {
+    ReadSections();
+    ReadHeader();
     ReadNames();
-    if (MaybeError failed = ReadFrames()) return *std::move(failed);
-    if (MaybeError failed = AddC3dRotations(bytes_, &file_)) return *std::move(failed);
+    ReadFrames();
+    AddC3dRotations(bytes_, &file_);
     file_.events = ReadC3dEvents(file_.parameters, bytes_);
     ReadC3dPlatforms(&file_);
     return std::move(file_);
   }
 
  private:
-  Error At(std::size_t at, const std::string& message) const {
-    return C3dError(path_, at, message);
+  [[noreturn]] void Fail(std::size_t at, const std::string& message) const {
+    throw C3dError(path_, at, message);
   }
   double Number(const char* group, const char* name, std::size_t index, double fallback) const {
     return file_.parameters.Number(group, name, index, fallback);
   }
 
-  MaybeError ReadSections() {
+  void ReadSections() {
     if (text_.size() < kC3dBlock) {
-      return Error{
-          "the file has " + std::to_string(text_.size()) +
-              " bytes; a C3D file starts with a header of 512: it is truncated or not a C3D file",
+      throw Error{
+          StrCat(
+              "the file has ", text_.size(),
+              " bytes; a C3D file starts with a header of 512: it is truncated or not a C3D file"),
           path_};
     }
     const C3dBytes head(text_, C3dProcessor::kIntel);
     if (head.Byte(1) != kMagic || head.Byte(0) == 0) {
-      return At(1, "this is not a C3D file: its second byte is " + std::to_string(head.Byte(1)) +
-                       ", not 80");
+      Fail(1, StrCat("this is not a C3D file: its second byte is ", head.Byte(1), ", not 80"));
     }
     const std::size_t begin = (head.Byte(0) - std::size_t{1}) * kC3dBlock;
-    if (!head.Has(begin, 4)) {
-      return At(begin, "the parameters should be here, but the file ends before");
-    }
+    if (!head.Has(begin, 4)) Fail(begin, "the parameters should be here, but the file ends before");
     const int processor = head.Byte(begin + 3);
     if (processor < 84 || processor > 86) {
-      return At(begin + 3, "the processor is " + std::to_string(processor) +
-                               "; 84 (Intel), 85 (DEC) and 86 (MIPS) are known");
+      Fail(begin + 3, StrCat("the processor is ", processor,
+                             "; 84 (Intel), 85 (DEC) and 86 (MIPS) are known"));
     }
     file_.processor = static_cast<C3dProcessor>(processor);
     bytes_ = C3dBytes(text_, file_.processor);
-    Result<C3dParameters> parameters = ParameterReader(path_, bytes_).Read(begin + 4);
-    if (!parameters.ok()) return parameters.error();
-    file_.parameters = std::move(parameters.value());
-    return std::nullopt;
+    file_.parameters = ParameterReader(path_, bytes_).Read(begin + 4);
   }
 
-  MaybeError ReadHeader() {
+  void ReadHeader() {
     num_points_ = bytes_.Word(2);
     const int samples = bytes_.Word(4);
     file_.first_frame = bytes_.Word(6);
@@ -376,32 +342,31 @@ class Reader {
     data_ = bytes_.Word(16);
     samples_per_frame_ = bytes_.Word(18);
     file_.point_rate_hz = bytes_.Real(20);
-    if (num_points_ > kMaxPoints)
-      return At(2, std::to_string(num_points_) + " points are too many");
+    if (num_points_ > kMaxPoints) Fail(2, StrCat(num_points_, " points are too many"));
     if (samples_per_frame_ == 0 && samples > 0) {
-      return At(18, "there are analog samples, but none per frame");
+      Fail(18, "there are analog samples, but none per frame");
     }
     if (samples_per_frame_ > 0 && samples % samples_per_frame_ != 0) {
-      return At(4, std::to_string(samples) + " analog samples per frame are not a multiple of " +
-                       std::to_string(samples_per_frame_));
+      Fail(4,
+           StrCat(samples, " analog samples per frame are not a multiple of ", samples_per_frame_));
     }
     num_channels_ = samples_per_frame_ > 0 ? samples / samples_per_frame_ : 0;
     if (!std::isfinite(scale_) || (scale_ == 0.0 && num_points_ > 0)) {
-      return At(12, "the scale of the points is " + Rounded(scale_));
+      Fail(12, "the scale of the points is " + Rounded(scale_));
     }
     if (!(file_.point_rate_hz > 0.0 && file_.point_rate_hz <= 1e5)) {
-      return At(20, "the frame rate is " + Rounded(file_.point_rate_hz) +
-                        " per second; it must be above 0 and at most 100000");
+      Fail(20, "the frame rate is " + Rounded(file_.point_rate_hz) +
+                   " per second; it must be above 0 and at most 100000");
     }
     file_.analog_rate_hz = file_.point_rate_hz * std::max(1, samples_per_frame_);
-    if (data_ == 0) return At(16, "the header does not give the start of the data");
+    if (data_ == 0) Fail(16, "the header does not give the start of the data");
     data_ = (data_ - 1) * kC3dBlock;
-    return CountFrames();
+    CountFrames();
   }
 
   // The header counts with 16 bits; longer recordings say it in TRIAL:ACTUAL_..._FIELD (two words
   // each) or POINT:LONG_FRAMES.
-  MaybeError CountFrames() {
+  void CountFrames() {
     const int last = bytes_.Word(8);
     double frames = last - file_.first_frame + 1.0;
     const double announced = Unsigned(Number("POINT", "FRAMES", 0, frames));
@@ -415,18 +380,17 @@ class Reader {
       frames = Number("POINT", "LONG_FRAMES", 0, frames);
     }
     if (!(frames >= 1.0 && frames < 2147483647.0 && std::floor(frames) == frames)) {
-      return At(6, "the first frame is " + std::to_string(file_.first_frame) + ", the last " +
-                       std::to_string(last) + ": the file has no frames");
+      Fail(6, StrCat("the first frame is ", file_.first_frame, ", the last ", last,
+                     ": the file has no frames"));
     }
     file_.announced_frames = static_cast<int>(frames);
-    return std::nullopt;
   }
 
   void ReadNames() {
     file_.point_names = file_.parameters.Texts("POINT", "LABELS");
     file_.point_names.resize(num_points_);
     for (int i = 0; i < num_points_; ++i) {
-      if (file_.point_names[i].empty()) file_.point_names[i] = "point_" + std::to_string(i + 1);
+      if (file_.point_names[i].empty()) file_.point_names[i] = StrCat("point_", i + 1);
     }
     const auto text = [this](const char* name) {
       const C3dParameter* parameter = file_.parameters.Find("POINT", name);
@@ -440,38 +404,35 @@ class Reader {
     names.resize(num_channels_);
     units.resize(num_channels_);
     for (int i = 0; i < num_channels_; ++i) {
-      if (names[i].empty()) names[i] = "channel_" + std::to_string(i + 1);
+      if (names[i].empty()) names[i] = StrCat("channel_", i + 1);
       file_.analog.push_back({names[i], units[i], {}});
     }
   }
 
-  MaybeError ReadFrames() {
+  void ReadFrames() {
     const std::size_t word = file_.floating ? 4 : 2;
     const std::size_t frame_size =
         word * (4 * static_cast<std::size_t>(num_points_) +
                 static_cast<std::size_t>(num_channels_) * samples_per_frame_);
-    if (frame_size == 0 && HasC3dRotations(file_)) {
+    if (frame_size == 0 && SegmentsOf(file_) > 0) {
       file_.frames_without_points = file_.announced_frames;
-      return std::nullopt;
+      return;
     }
-    if (frame_size == 0) return At(2, "the file has neither points nor analog channels");
+    if (frame_size == 0) Fail(2, "the file has neither points nor analog channels");
     const std::size_t available = data_ < bytes_.size() ? (bytes_.size() - data_) / frame_size : 0;
     std::size_t frames = file_.announced_frames;
-    if (available < frames) {
-      if (available == 0 || !accept_truncated_) {
-        return At(bytes_.size(), "the file ends after " + std::to_string(available) + " of " +
-                                     std::to_string(frames) +
-                                     " frames: it is truncated; export it again");
-      }
-      frames = available;
+    if (available < frames && (available == 0 || !accept_truncated_)) {
+      Fail(bytes_.size(), StrCat("the file ends after ", available, " of ", frames,
+                                 " frames: it is truncated; export it again"));
     }
+    frames = std::min(frames, available);
     file_.frames_without_points = static_cast<int>(frames);
     file_.points.resize(num_points_);
     for (auto& track : file_.points) track.reserve(frames);
     for (C3dAnalogChannel& channel : file_.analog) {
       channel.samples.reserve(frames * samples_per_frame_);
     }
-    if (MaybeError failed = PrepareAnalog()) return failed;
+    PrepareAnalog();
     for (std::size_t frame = 0; frame < frames; ++frame) {
       std::size_t at = data_ + frame * frame_size;
       for (auto& track : file_.points) {
@@ -484,7 +445,6 @@ class Reader {
         }
       }
     }
-    return std::nullopt;
   }
 
   // The fourth word holds a negative number where the point was not seen; some programs leave zeros
@@ -504,7 +464,7 @@ class Reader {
 
   // ANALOG:NAME, NAME2, ...: one number for each channel. None at all leaves `neutral`, and a value
   // without dimensions holds for all; a list that is too short does not say what it left out.
-  Result<std::vector<double>> PerChannel(const std::string& name, double neutral) const {
+  std::vector<double> PerChannel(const std::string& name, double neutral) const {
     std::vector<double> numbers = file_.parameters.Numbers("ANALOG", name);
     const C3dParameter* parameter = file_.parameters.Find("ANALOG", name);
     const std::size_t channels = file_.analog.size();
@@ -513,33 +473,27 @@ class Reader {
     } else if (numbers.size() == 1 && parameter->dimensions.empty()) {
       numbers.assign(channels, numbers[0]);
     } else if (numbers.size() < channels) {
-      return Error{"ANALOG:" + name + " ends after " + std::to_string(numbers.size()) + " of " +
-                       std::to_string(channels) + " analog channels, before " +
-                       Quoted(file_.analog[numbers.size()].name) +
-                       "; export the file again, with one number for every channel (from the " +
-                       "256th on in ANALOG:" + name + "2)",
-                   path_};
+      throw Error{StrCat("ANALOG:", name, " ends after ", numbers.size(), " of ", channels,
+                         " analog channels, before ", Quoted(file_.analog[numbers.size()].name),
+                         "; export the file again, with one number for every channel (from the ",
+                         "256th on in ANALOG:", name, "2)"),
+                  path_};
     }
     return numbers;
   }
 
-  MaybeError PrepareAnalog() {
+  void PrepareAnalog() {
     const double general = Number("ANALOG", "GEN_SCALE", 0, 1.0);
-    Result<std::vector<double>> scales = PerChannel("SCALE", 1.0);
-    if (!scales.ok()) return scales.error();
-    Result<std::vector<double>> offsets = PerChannel("OFFSET", 0.0);
-    if (!offsets.ok()) return offsets.error();
+    analog_scale_ = PerChannel("SCALE", 1.0);
+    analog_offset_ = PerChannel("OFFSET", 0.0);
     // Where nothing says it, an offset at the end of the signed range is the middle of the other.
     const C3dParameter* format = file_.parameters.Find("ANALOG", "FORMAT");
-    const auto ends = [](double offset) { return offset < -16384.0; };
     unsigned_ = format != nullptr && !format->texts.empty()
                     ? EqualsIgnoringCase(format->texts[0], "UNSIGNED")
-                    : std::any_of(offsets.value().begin(), offsets.value().end(), ends);
-    for (double& scale : scales.value()) scale *= general;
-    for (double& offset : offsets.value()) offset = unsigned_ ? Unsigned(offset) : offset;
-    analog_scale_ = std::move(scales.value());
-    analog_offset_ = std::move(offsets.value());
-    return std::nullopt;
+                    : std::any_of(analog_offset_.begin(), analog_offset_.end(),
+                                  [](double offset) { return offset < -16384.0; });
+    for (double& scale : analog_scale_) scale *= general;
+    for (double& offset : analog_offset_) offset = unsigned_ ? Unsigned(offset) : offset;
   }
 
   double Sample(std::size_t at, int channel) const {
@@ -603,15 +557,12 @@ std::uint16_t C3dBytes::Word(std::size_t at) const {
 
 double C3dBytes::Real(std::size_t at) const {
   const std::uint32_t first = Word(at), second = Word(at + 2);
-  switch (processor_) {
-    case C3dProcessor::kDec:
-      return FromVax(first << 16 | second);
-    case C3dProcessor::kMips:
-      return FromIeee(first << 16 | second);
-    case C3dProcessor::kIntel:
-      break;
-  }
-  return FromIeee(second << 16 | first);
+  if (processor_ == C3dProcessor::kDec) return FromVax(first << 16 | second);
+  const bool mips = processor_ == C3dProcessor::kMips;
+  const std::uint32_t bits = mips ? first << 16 | second : second << 16 | first;
+  float value;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
 }
 
 int C3dFile::samples_per_frame() const {
@@ -632,34 +583,34 @@ int C3dFile::FindAnalog(std::string_view name) const {
 }
 
 Result<PointMotion> PointsOfC3d(const C3dFile& file, const PointReadOptions& options) {
-  PointMotion motion;
-  motion.path = file.path;
-  motion.rate_hz = file.point_rate_hz;
-  motion.unit_text = file.point_unit;
-  motion.unit = FromName<LengthUnit>(file.point_unit);
-  motion.up = UpOfScreen(file.screen_y);
-  motion.names = file.point_names;
-  motion.content_hash = file.content_hash;
-  if (MaybeError failed = ChoosePoints(options, &motion)) return *std::move(failed);
-  for (int index : motion.chosen) motion.positions.push_back(file.points[index]);
-  return motion;
+  return Caught([&] {
+    PointMotion motion;
+    motion.path = file.path;
+    motion.rate_hz = file.point_rate_hz;
+    motion.unit_text = file.point_unit;
+    motion.unit = FromName<LengthUnit>(file.point_unit);
+    motion.up = UpOfScreen(file.screen_y);
+    motion.names = file.point_names;
+    motion.content_hash = file.content_hash;
+    ChoosePoints(options, &motion);
+    for (int index : motion.chosen) motion.positions.push_back(file.points[index]);
+    return motion;
+  });
 }
 
 Result<PointMotion> ReadC3dPoints(const std::string& path, const PointReadOptions& options) {
-  const Result<C3dFile> file = ReadC3d(path);
-  if (!file.ok()) return file.error();
-  return PointsOfC3d(file.value(), options);
+  return Caught([&] { return OrThrow(PointsOfC3d(OrThrow(ReadC3d(path)), options)); });
 }
 
 Result<C3dFile> ReadC3d(const std::string& path, bool accept_truncated) {
-  const Result<std::string> text = ReadWholeFile(path);
-  if (!text.ok()) return text.error();
-  Result<C3dFile> file = Reader(path, text.value(), accept_truncated).Read();
-  if (!file.ok()) return file.error();
-  ContentHash hash;
-  hash.Add(text.value());
-  file.value().content_hash = hash.Hex();
-  return file;
+  return Caught([&] {
+    const std::string bytes = OrThrow(ReadWholeFile(path));
+    C3dFile file = Reader(path, bytes, accept_truncated).Read();
+    ContentHash hash;
+    hash.Add(bytes);
+    file.content_hash = hash.Hex();
+    return file;
+  });
 }
 
 }  // namespace pushid

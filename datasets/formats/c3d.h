@@ -67,12 +67,11 @@ class C3dBytes {
   C3dProcessor processor_ = C3dProcessor::kIntel;
 };
 
-enum class C3dType { kText = -1, kByte = 1, kInteger = 2, kReal = 4 };
+enum class C3dType { kText = -1, kByte = 1, kInteger = 2, kReal = 4 };  // as the file has them
 
 // One entry of the parameter section, GROUP:NAME. First dimension fastest.
 struct C3dParameter {
   std::string group, name;
-  C3dType type = C3dType::kReal;
   std::vector<int> dimensions;     // empty for a single value
   std::vector<double> numbers;     // bytes (unsigned), integers (signed) and reals
   std::vector<std::string> texts;  // kText: one per string, blanks at the end cut off

@@ -37,52 +37,45 @@ bool AreCalled(const std::vector<std::string>& names, const NamedColumn (&column
                     });
 }
 
-// A table without gaps, and its lines. columns: IsPush or IsSensor; expected: what else to say.
-Result<NumericTable> ReadTable(const std::string& path,
-                               bool (*columns)(const std::vector<std::string>& names),
-                               const std::string& expected) {
-  TableReadOptions options;
-  options.keep_lines = true;
-  options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
-    if (!columns(names)) {
-      return Error{"the header is " + Quoted(ListOfNames(names)) + ", " + expected +
-                       (IsSensor(names) ? "; pushid-push --sensor makes such a push of it" : ""),
-                   path};
-    }
-    std::vector<int> all(names.size());
-    std::iota(all.begin(), all.end(), 0);
-    return all;
-  };
-  Result<NumericTable> table = ReadNumericTable(path, TableFormat::kCsv, options);
-  for (std::size_t row = 0; table.ok() && row < table.value().lines.size(); ++row) {
-    for (std::size_t i = 0; i < table.value().names.size(); ++i) {
-      if (std::isfinite(table.value().data[i][row])) continue;
-      return Error{table.value().names[i] + " is missing; fill the gap or cut the record there",
-                   path, table.value().lines[row]};
+// A table without gaps. columns: IsPush or IsSensor; expected: the rest of the error.
+NumericTable ReadTable(const std::string& path,
+                       bool (*columns)(const std::vector<std::string>& names),
+                       const std::string& expected) {
+  NumericTable table =
+      OrThrow(ReadNumericTable(path, TableFormat::kCsv, [&](const std::vector<std::string>& names) {
+        if (!columns(names)) {
+          throw Error{"the header is " + Quoted(ListOfNames(names)) + ", " + expected +
+                          (IsSensor(names) ? "; pushid-push --sensor makes such a push of it" : ""),
+                      path};
+        }
+        std::vector<int> all(names.size());
+        std::iota(all.begin(), all.end(), 0);
+        return all;
+      }));
+  for (int row = 0; row < table.num_rows(); ++row) {
+    for (std::size_t i = 0; i < table.names.size(); ++i) {
+      if (std::isfinite(table.data[i][row])) continue;
+      throw Error{table.names[i] + " is missing; fill the gap or cut the record there", path,
+                  table.lines[row]};
     }
   }
   return table;
 }
 
-// The first pause that is no sampling interval any more. `lines` holds each sample's line.
-MaybeError FindGap(const SensorRecord& record, const std::vector<int>& lines) {
+// Throws at the first pause that is no sampling interval any more.
+void CheckPauses(const SensorRecord& record, const std::vector<int>& lines) {
   std::vector<double> pauses;
   for (int i = 1; i < record.num_samples(); ++i) {
     pauses.push_back(record.time_s[i] - record.time_s[i - 1]);
   }
-  std::vector<double> sorted = pauses;
-  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-  const double usual = sorted[sorted.size() / 2];
+  const double usual = UpperMedian(pauses);
   for (size_t i = 0; i < pauses.size(); ++i) {
-    if (pauses[i] > kMaxSensorPause * usual) {
-      return Error{"no samples for " + Rounded(pauses[i]) + " s, from " +
-                       Rounded(record.time_s[i]) + " s to " + Rounded(record.time_s[i + 1]) +
-                       " s, where " + Rounded(usual) +
-                       " s is usual; fill the gap or cut the record there",
-                   record.file, lines[i + 1]};
-    }
+    if (pauses[i] <= kMaxSensorPause * usual) continue;
+    throw Error{"no samples for " + Rounded(pauses[i]) + " s, from " + Rounded(record.time_s[i]) +
+                    " s to " + Rounded(record.time_s[i + 1]) + " s, where " + Rounded(usual) +
+                    " s is usual; fill the gap or cut the record there",
+                record.file, lines[i + 1]};
   }
-  return {};
 }
 
 }  // namespace
@@ -97,25 +90,25 @@ bool IsSensor(const std::vector<std::string>& names) {
 }
 
 Result<PushRows> ReadPushCsv(const std::string& path) {
-  const Result<NumericTable> read =
-      ReadTable(path, &IsPush,
-                std::string("not ") + kHeader +
-                    " (or frame,fx,fy of a push at the manifest's push_height_m)");
-  if (!read.ok()) return read.error();
-  const NumericTable& table = read.value();
-  PushRows push;
-  push.has_torques = table.names.size() == kNumColumns;
-  for (int row = 0; row < table.num_rows(); ++row) {
-    if (table.data[0][row] != row) {
-      return Error{"frame is " + Rounded(table.data[0][row]) + " where " + std::to_string(row) +
-                       " was expected; rows must count 0, 1, 2, ... without gaps (a late push is "
-                       "given by start_frame in the manifest)",
-                   path, table.lines[row]};
+  return Caught([&] {
+    const NumericTable table = ReadTable(
+        path, &IsPush,
+        StrCat("not ", kHeader, " (or frame,fx,fy of a push at the manifest's push_height_m)"));
+    PushRows push;
+    push.has_torques = table.names.size() == kNumColumns;
+    for (int row = 0; row < table.num_rows(); ++row) {
+      if (table.data[0][row] != row) {
+        throw Error{
+            StrCat("frame is ", Rounded(table.data[0][row]), " where ", row,
+                   " was expected; rows must count 0, 1, 2, ... without gaps (a late push is "
+                   "given by start_frame in the manifest)"),
+            path, table.lines[row]};
+      }
+      Eigen::Vector4d& force = push.force.emplace_back(Eigen::Vector4d::Zero());
+      for (std::size_t i = 1; i < table.names.size(); ++i) force[i - 1] = table.data[i][row];
     }
-    Eigen::Vector4d& force = push.force.emplace_back(Eigen::Vector4d::Zero());
-    for (std::size_t i = 1; i < table.names.size(); ++i) force[i - 1] = table.data[i][row];
-  }
-  return push;
+    return push;
+  });
 }
 
 MaybeError WritePushCsv(const std::string& path, const std::vector<Eigen::Vector4d>& force) {
@@ -123,7 +116,7 @@ MaybeError WritePushCsv(const std::string& path, const std::vector<Eigen::Vector
   std::string text = std::string(kHeader) + "\n";
   for (std::size_t frame = 0; frame < force.size(); ++frame) {
     if (!force[frame].allFinite()) {
-      return Error{"row " + std::to_string(frame) + " of the push to write is not finite", path, 0};
+      return Error{StrCat("row ", frame, " of the push to write is not finite"), path, 0};
     }
     text += std::to_string(frame);
     for (int i = 0; i < 4; ++i) {
@@ -136,32 +129,32 @@ MaybeError WritePushCsv(const std::string& path, const std::vector<Eigen::Vector
 }
 
 Result<SensorRecord> ReadSensorCsv(const std::string& path) {
-  const Result<NumericTable> read = ReadTable(
-      path, &IsSensor,
-      "neither time,force nor time,fx,fy,fz (s or ms, N); select the push by --sensor_column (in a "
-      "list of sensors by \"column\", with its \"gain\" if it is not in N)");
-  if (!read.ok()) return read.error();
-  const NumericTable& table = read.value();
-  SensorRecord record;
-  record.file = path;
-  record.is_vector = table.names.size() > 2;
-  record.time_s = table.data[0];
-  for (int row = 0; row < table.num_rows(); ++row) {
-    Eigen::Vector3d& force = record.force.emplace_back(Eigen::Vector3d::Zero());
-    for (std::size_t i = 1; i < table.names.size(); ++i) force[i - 1] = table.data[i][row];
-    if (row == 0 || record.time_s[row] > record.time_s[row - 1]) continue;
-    return Error{"time " + Rounded(record.time_s[row], 9) + " s does not come after " +
-                     Rounded(record.time_s[row - 1], 9) +
-                     " s; samples must be in ascending order, each once",
-                 path, table.lines[row]};
-  }
-  if (record.num_samples() < kMinSamples) {
-    return Error{"the record ends after " + std::to_string(record.num_samples()) +
-                     " samples; a push needs at least " + std::to_string(kMinSamples),
-                 path, table.lines.back()};
-  }
-  if (MaybeError gap = FindGap(record, table.lines)) return *std::move(gap);
-  return record;
+  return Caught([&] {
+    const NumericTable table = ReadTable(
+        path, &IsSensor,
+        "neither time,force nor time,fx,fy,fz (s or ms, N); select the push by --sensor_column (in "
+        "a list of sensors by \"column\", with its \"gain\" if it is not in N)");
+    SensorRecord record;
+    record.file = path;
+    record.is_vector = table.names.size() > 2;
+    record.time_s = table.data[0];
+    for (int row = 0; row < table.num_rows(); ++row) {
+      Eigen::Vector3d& force = record.force.emplace_back(Eigen::Vector3d::Zero());
+      for (std::size_t i = 1; i < table.names.size(); ++i) force[i - 1] = table.data[i][row];
+      if (row == 0 || record.time_s[row] > record.time_s[row - 1]) continue;
+      throw Error{"time " + Rounded(record.time_s[row], 9) + " s does not come after " +
+                      Rounded(record.time_s[row - 1], 9) +
+                      " s; samples must be in ascending order, each once",
+                  path, table.lines[row]};
+    }
+    if (record.num_samples() < kMinSamples) {
+      throw Error{StrCat("the record ends after ", record.num_samples(),
+                         " samples; a push needs at least ", kMinSamples),
+                  path, table.lines.back()};
+    }
+    CheckPauses(record, table.lines);
+    return record;
+  });
 }
 
 std::string ClippedText(const SensorRecord& record) {
@@ -183,10 +176,11 @@ std::string ClippedText(const SensorRecord& record) {
     // A force that was computed, or held by a machine, stays the same elsewhere too.
     const bool noisy = 2 * changes > outside;
     if (!noisy || at_limit < std::max(kFewestAtLimit, 3 * below)) continue;
-    return record.file + ": " + std::to_string(at_limit) +
-           " samples on end read exactly the largest force, " + Rounded(limit, 3) +
-           " N: the sensor's range was exceeded, and the push was larger; leave the recording out "
-           "(--leave_out)";
+    return StrCat(
+        record.file, ": ", at_limit, " samples on end read exactly the largest force, ",
+        Rounded(limit, 3),
+        " N: the sensor's range was exceeded, and the push was larger; leave the recording out "
+        "(--leave_out)");
   }
   return "";
 }

@@ -1,5 +1,5 @@
-// datasets: the formats of motion files, one row each: manifest key, file endings and reader. What
-// any program, message or manifest says of a format comes from here.
+// datasets: the formats of motion files, one row each: manifest key, file endings and reader.
+// Everything that a program, message or manifest says of a format comes from here.
 //
 //   Result<PointMotion> motion = ReadPointMotion("trial.trc", MotionFormat::kTrc, {});
 //
@@ -51,11 +51,10 @@ static_assert(RowsAreInOrder(kMotionFormats), "RowOf finds a row by its value");
 inline bool HasSkeleton(MotionFormat format) { return RowOf(format).read == nullptr; }
 // Whether the points of the format are people of a crowd.
 inline bool HoldsCrowd(MotionFormat format) { return format == MotionFormat::kTrajectoryText; }
-// Why recordings of people cannot be made of such a file.
+// The reason why recordings of people cannot be made of such a file.
 inline constexpr char kCrowdIsNoRecording[] =
     "a file of trajectories holds one point for each person of a group: it shows when each began "
-    "to "
-    "move and how fast a push travelled (pushid-inspect --wave), and where people stand for "
+    "to move and how fast a push travelled (pushid-inspect --wave), and where people stand for "
     "pushid-formation --formation; balance, contact forces and steps it does not show, for which "
     "a fit needs the ankles of each; a tracker's numbered markers need \"joints\" (in a mapping "
     "file or the manifest)";
@@ -92,10 +91,8 @@ struct TimedColumns {
   int num_rows() const { return static_cast<int>(lines.size()); }
 };
 
-// choose: indices of the columns wanted, from all names; negative ones come out empty. Errors
-// besides the choice's and those of numeric_table.h: no column of times, uneven ones.
-Result<TimedColumns> ReadTimedColumns(
-    const std::string& path,
-    const std::function<Result<std::vector<int>>(const std::vector<std::string>&)>& choose);
+// choose: indices of the columns wanted; negative ones come out empty. Throws an Error: the
+// choice's, those of numeric_table.h, no column of times, uneven ones.
+TimedColumns ReadTimedColumns(const std::string& path, const Choice& choose);
 
 }  // namespace pushid

@@ -25,94 +25,61 @@ std::string AxesOf(const std::string& name) {
                                 : "";
 }
 
-std::string WithoutSeparator(std::string stem) {
-  while (!stem.empty() && std::string("_.:- ").find(stem.back()) != std::string::npos) {
-    stem.pop_back();
-  }
-  return stem;
-}
-
-Result<std::vector<TablePoint>> NamedPoints(const std::string& path,
-                                            const std::vector<std::string>& names,
-                                            const std::vector<PointColumns>& wanted) {
+std::vector<TablePoint> NamedPoints(const std::string& path, const std::vector<std::string>& names,
+                                    const std::vector<PointColumns>& wanted) {
   std::vector<TablePoint> points;
   for (const PointColumns& one : wanted) {
-    TablePoint point;
+    TablePoint& point = points.emplace_back();
     point.name = one.name;
     const std::string* columns[] = {&one.x, &one.y, &one.z};
     for (int axis = 0; axis < 3; ++axis) {
-      for (std::size_t i = 0; i < names.size(); ++i) {
-        if (names[i] == *columns[axis]) point.columns[axis] = static_cast<int>(i);
-      }
-      if (point.columns[axis] < 0) {
-        return UnknownNameError(path, "column", names, *columns[axis]);
-      }
+      const auto found = std::find(names.begin(), names.end(), *columns[axis]);
+      if (found == names.end()) throw UnknownNameError(path, "column", names, *columns[axis]);
+      point.columns[axis] = static_cast<int>(found - names.begin());
     }
-    points.push_back(point);
   }
   return points;
 }
 
-// Columns x, y and z of each of the chosen points.
-std::vector<int> ColumnsOf(const std::vector<TablePoint>& points, const std::vector<int>& chosen) {
-  std::vector<int> columns;
-  for (int index : chosen) {
-    columns.insert(columns.end(), points[index].columns, points[index].columns + 3);
-  }
-  return columns;
-}
-
-// The table keeps the columns of the chosen points first.
-void TakeTracks(const NumericTable& table, PointMotion* motion) {
-  for (std::size_t i = 0; i < motion->chosen.size(); ++i) {
-    const std::vector<double>*x = &table.data[3 * i], *y = x + 1, *z = x + 2;
-    std::vector<Eigen::Vector3d>& track = motion->positions.emplace_back(table.num_rows());
-    for (int row = 0; row < table.num_rows(); ++row) {
-      track[row] = SeenPosition({(*x)[row], (*y)[row], (*z)[row]});
-    }
-  }
-}
-
 Result<PointMotion> ReadTablePoints(const std::string& path, TableFormat format,
                                     const PointReadOptions& options) {
-  PointMotion motion;
-  motion.path = path;
-  std::vector<TablePoint> points;
-  int time_column = -1;
-  TableReadOptions table_options;
-  table_options.keep_lines = true;
-  table_options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
-    if (options.columns.empty()) {
-      points = PointsOf(names);
-    } else {
-      Result<std::vector<TablePoint>> named = NamedPoints(path, names, options.columns);
-      if (!named.ok()) return named.error();
-      points = named.value();
+  return Caught([&] {
+    PointMotion motion;
+    motion.path = path;
+    int time_column = -1;
+    // Columns x, y and z of each of the chosen points, and then the time.
+    const auto choose = [&](const std::vector<std::string>& names) {
+      const std::vector<TablePoint> points =
+          options.columns.empty() ? PointsOf(names) : NamedPoints(path, names, options.columns);
+      time_column = FindTimeColumn(names, options.time_column);
+      if (time_column < 0 && !options.time_column.empty()) {
+        throw Error{"there is no column '" + options.time_column + "' for the time", path};
+      }
+      for (const TablePoint& point : points) motion.names.push_back(point.name);
+      if (!points.empty()) ChoosePoints(options, &motion);
+      std::vector<int> columns;
+      for (int index : motion.chosen) {
+        columns.insert(columns.end(), points[index].columns, points[index].columns + 3);
+      }
+      if (time_column >= 0) columns.push_back(time_column);
+      if (columns.empty() && !names.empty()) columns.push_back(0);  // counts the rows
+      return columns;
+    };
+    const NumericTable table = OrThrow(ReadNumericTable(path, format, choose));
+    motion.content_hash = table.content_hash;
+    if (time_column >= 0) {
+      motion.rate_hz = 1.0 / OrThrow(EvenTimeStep(table, time_column));
+      motion.first_time_s = table.data.back().front();
     }
-    time_column = FindTimeColumn(names, options.time_column);
-    if (time_column < 0 && !options.time_column.empty()) {
-      return Error{"there is no column '" + options.time_column + "' for the time", path};
+    for (std::size_t i = 0; i < motion.chosen.size(); ++i) {
+      const std::vector<double>*x = &table.data[3 * i], *y = x + 1, *z = x + 2;
+      std::vector<Eigen::Vector3d>& track = motion.positions.emplace_back();
+      for (int row = 0; row < table.num_rows(); ++row) {
+        track.push_back(SeenPosition({(*x)[row], (*y)[row], (*z)[row]}));
+      }
     }
-    for (const TablePoint& point : points) motion.names.push_back(point.name);
-    if (!points.empty()) {
-      if (MaybeError failed = ChoosePoints(options, &motion)) return *std::move(failed);
-    }
-    std::vector<int> columns = ColumnsOf(points, motion.chosen);
-    if (time_column >= 0) columns.push_back(time_column);
-    if (columns.empty() && !names.empty()) columns.push_back(0);  // counts the rows
-    return columns;
-  };
-  const Result<NumericTable> table = ReadNumericTable(path, format, table_options);
-  if (!table.ok()) return table.error();
-  motion.content_hash = table.value().content_hash;
-  if (time_column >= 0) {
-    const Result<double> step = EvenTimeStep(table.value(), time_column);
-    if (!step.ok()) return step.error();
-    motion.rate_hz = 1.0 / step.value();
-    motion.first_time_s = table.value().data.back().front();
-  }
-  TakeTracks(table.value(), &motion);
-  return motion;
+    return motion;
+  });
 }
 
 constexpr double kRateTolerance = 0.01;
@@ -126,41 +93,37 @@ std::vector<std::string_view> TabFields(std::string_view line) {
 
 class TrcReader {
  public:
-  TrcReader(const std::string& path, const PointReadOptions& options) : options_(options) {
+  TrcReader(const std::string& path, const PointReadOptions& options)
+      : options_(options), reader_(path) {
     motion_.path = path;
   }
 
-  Result<PointMotion> Read() {
-    if (MaybeError failed = reader_.Open(motion_.path)) return *std::move(failed);
-    if (MaybeError failed = ReadHead()) return *std::move(failed);
-    if (MaybeError failed = ReadNames()) return *std::move(failed);
-    if (MaybeError failed = ReadRows()) return *std::move(failed);
+  PointMotion Read() {
+    ReadHead();
+    ReadNames();
+    ReadRows();
     motion_.content_hash = reader_.HashHex();
     return std::move(motion_);
   }
 
  private:
-  // The next line that is not blank, in fields; an Error where the file ends.
-  MaybeError Next(const char* what, std::vector<std::string_view>* fields) {
+  [[noreturn]] void Fail(const std::string& problem) const { throw reader_.ErrorHere(problem); }
+
+  // The next line that is not blank, in fields.
+  std::vector<std::string_view> Next(const std::string& what) {
     std::string_view line;
-    if (!reader_.NextNonBlank(&line)) {
-      if (reader_.error()) return reader_.error();
-      return reader_.ErrorHere(std::string("the file ends where ") + what +
-                               " should be: it is truncated");
-    }
-    *fields = TabFields(line);
-    return std::nullopt;
+    if (reader_.NextNonBlank(&line)) return TabFields(line);
+    Fail("the file ends where " + what + " should be: it is truncated");
   }
 
-  MaybeError ReadHead() {
-    std::vector<std::string_view> fields;
-    if (MaybeError failed = Next("PathFileType", &fields)) return failed;
-    if (fields.empty() || !EqualsIgnoringCase(fields[0], "PathFileType")) {
-      return reader_.ErrorHere("a TRC file starts with PathFileType and tabs");
+  void ReadHead() {
+    const std::vector<std::string_view> head = Next("PathFileType");
+    if (head.empty() || !EqualsIgnoringCase(head[0], "PathFileType")) {
+      Fail("a TRC file starts with PathFileType and tabs");
     }
-    if (MaybeError failed = Next("DataRate", &fields)) return failed;
-    const std::vector<std::string> keys(fields.begin(), fields.end());
-    if (MaybeError failed = Next("the values of DataRate, NumFrames, ...", &fields)) return failed;
+    std::vector<std::string> keys;
+    for (const std::string_view key : Next("DataRate")) keys.emplace_back(key);
+    const std::vector<std::string_view> fields = Next("the values of DataRate, NumFrames, ...");
     double frames = -1.0, markers = -1.0;
     for (std::size_t i = 0; i < keys.size() && i < fields.size(); ++i) {
       double number = 0.0;
@@ -171,61 +134,58 @@ class TrcReader {
       if (keys[i] == "Units") motion_.unit_text = std::string(fields[i]);
     }
     if (!(motion_.rate_hz > 0.0 && motion_.rate_hz <= 1e5)) {
-      return reader_.ErrorHere(
-          "DataRate must be a number of frames per second above 0; tabs separate cells");
+      Fail("DataRate must be a number of frames per second above 0; tabs separate cells");
     }
     if (!(frames >= 1.0 && frames <= 2e9) || !(markers >= 1.0 && markers <= kMostMarkers)) {
-      return reader_.ErrorHere("NumFrames and NumMarkers must be 1 or more");
+      Fail("NumFrames and NumMarkers must be 1 or more");
     }
     num_frames_ = static_cast<std::int64_t>(frames);
     num_markers_ = static_cast<std::int64_t>(markers);
     motion_.unit = FromName<LengthUnit>(motion_.unit_text);
-    return std::nullopt;
   }
 
-  MaybeError ReadNames() {
-    std::vector<std::string_view> fields;
-    if (MaybeError failed = Next("Frame#, Time and the markers", &fields)) return failed;
+  void ReadNames() {
+    const std::vector<std::string_view> fields = Next("Frame#, Time and the markers");
     if (fields.size() < 3 || !EqualsIgnoringCase(fields[0].substr(0, 5), "Frame") ||
         !EqualsIgnoringCase(fields[1], "Time")) {
-      return reader_.ErrorHere("Frame#, Time and the names of the markers are expected here");
+      Fail("Frame#, Time and the names of the markers are expected here");
     }
     for (std::size_t i = 2; i < fields.size(); ++i) {
       if (!fields[i].empty()) motion_.names.emplace_back(fields[i]);
     }
     if (static_cast<std::int64_t>(motion_.names.size()) != num_markers_) {
-      return reader_.ErrorHere("NumMarkers is " + std::to_string(num_markers_) + ", but " +
-                               std::to_string(motion_.names.size()) + " markers are named here");
+      Fail(StrCat("NumMarkers is ", num_markers_, ", but ", motion_.names.size(),
+                  " markers are named here"));
     }
-    if (MaybeError failed = Next("X1, Y1, Z1, ...", &fields)) return failed;
-    if (MaybeError failed = ChoosePoints(options_, &motion_)) return failed;
+    Next("X1, Y1, Z1, ...");
+    ChoosePoints(options_, &motion_);
     motion_.positions.resize(motion_.chosen.size());
-    return std::nullopt;
   }
 
-  MaybeError ReadRows() {
+  void ReadRows() {
     row_.resize(3 * num_markers_);
     std::int64_t rows = 0;
-    std::string_view line;
-    while (reader_.NextNonBlank(&line)) {
-      if (++rows > num_frames_) {
-        return reader_.ErrorHere("wrong frame count: NumFrames is " + std::to_string(num_frames_) +
-                                 ", but here is one row more");
-      }
-      if (MaybeError failed = ReadRow(line, rows)) return failed;
+    const std::string wrong = StrCat("wrong frame count: NumFrames is ", num_frames_, ", but ");
+    for (std::string_view line; reader_.NextNonBlank(&line);) {
+      if (++rows > num_frames_) Fail(wrong + "here is one row more");
+      ReadRow(line, rows);
     }
-    if (reader_.error()) return reader_.error();
     if (rows < num_frames_) {
-      return reader_.ErrorHere("wrong frame count: NumFrames is " + std::to_string(num_frames_) +
-                               ", but the file ends after " + std::to_string(rows) +
-                               ": it is truncated, or the count is wrong");
+      Fail(StrCat(wrong, "the file ends after ", rows, ": it is truncated, or the count is wrong"));
     }
-    return CheckRate(rows);
+    // Times may be rounded to a millisecond.
+    const double span = last_time_s_ - motion_.first_time_s;
+    if (rows < 3 || !(span > 0.0)) return;
+    const double step = span / static_cast<double>(rows - 1);
+    if (std::fabs(step * motion_.rate_hz - 1.0) <= kRateTolerance + 1e-3 / span) return;
+    Fail("Time grows by " + Rounded(step) + " s a row, " + Rounded(1.0 / step) +
+         " rows a second, but DataRate is " + Rounded(motion_.rate_hz) +
+         "; correct the one that is wrong");
   }
 
   // Frame# grows by 1, or by what it grows in the first row of a file with every n-th frame, which
   // is one row by Time; Time by a row, rounded to a millisecond.
-  MaybeError CheckSequence(double frame, double time, std::int64_t rows) {
+  void CheckSequence(double frame, double time, std::int64_t rows) {
     const double from = std::exchange(last_frame_, frame),
                  since = std::exchange(last_time_s_, time);
     const double frames = frame - from, seconds = time - since, row_s = 1.0 / motion_.rate_hz;
@@ -234,87 +194,57 @@ class TrcReader {
       usual_s_ = std::max(seconds, row_s);
       if (seconds > 0.0 && seconds < 1.5 * row_s && frames >= 0.0) usual_frames_ = frames;
     }
-    if (rows < 2) return std::nullopt;
     const bool jumps = frames != usual_frames_;
-    if (!jumps && seconds >= 0.0 && seconds <= 1.5 * usual_s_ + 1.1e-3) return std::nullopt;
+    if (rows < 2 || (!jumps && seconds >= 0.0 && seconds <= 1.5 * usual_s_ + 1.1e-3)) return;
     const bool back = jumps ? frames <= 0.0 : seconds < 0.0;
-    return reader_.ErrorHere(
-        (back ? "rows are in another order here: " : "rows are missing before this one: ") +
-        (jumps ? "Frame# goes from " + Rounded(from, 9) + " to " + Rounded(frame, 9)
-               : "Time goes from " + Rounded(since, 9) + " to " + Rounded(time, 9) + " s"));
+    Fail((back ? "rows are in another order here: " : "rows are missing before this one: ") +
+         (jumps ? "Frame# goes from " + Rounded(from, 9) + " to " + Rounded(frame, 9)
+                : "Time goes from " + Rounded(since, 9) + " to " + Rounded(time, 9) + " s"));
   }
 
-  // Times may be rounded to a millisecond.
-  MaybeError CheckRate(std::int64_t rows) const {
-    const double span = last_time_s_ - motion_.first_time_s;
-    if (rows < 3 || !(span > 0.0)) return std::nullopt;
-    const double step = span / static_cast<double>(rows - 1);
-    if (std::fabs(step * motion_.rate_hz - 1.0) <= kRateTolerance + 1e-3 / span)
-      return std::nullopt;
-    return reader_.ErrorHere("Time grows by " + Rounded(step) + " s a row, " + Rounded(1.0 / step) +
-                             " rows a second, but DataRate is " + Rounded(motion_.rate_hz) +
-                             "; correct the one that is wrong");
-  }
-
-  // Rows may leave out the tabs of markers not seen, so only its newline tells that a shorter one
-  // is whole.
-  MaybeError CheckLastRow(std::string_view line) const {
+  void ReadRow(std::string_view line, std::int64_t rows) {
     const std::size_t expected = row_.size() + 2;
     const std::size_t cells = 1 + std::count(line.begin(), line.end(), '\t');
-    if (cells >= expected) return std::nullopt;
-    return reader_.ErrorHere(
-        "the file ends after " + std::to_string(cells) + " of the " + std::to_string(expected) +
-        " cells of its last row, without a newline: it is truncated; export it again, or end the "
-        "row with a newline if it only leaves out markers not seen");
-  }
-
-  MaybeError ReadRow(std::string_view line, std::int64_t rows) {
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    const std::size_t expected = row_.size() + 2;
-    if (!reader_.ended_in_newline()) {
-      if (MaybeError failed = CheckLastRow(line)) return failed;
+    // Rows may leave out the tabs of markers not seen, so only its newline tells that a shorter one
+    // is whole.
+    if (!reader_.ended_in_newline() && cells < expected) {
+      Fail(StrCat(
+          "the file ends after ", cells, " of the ", expected,
+          " cells of its last row, without a newline: it is truncated; export it again, or end "
+          "the row with a newline if it only leaves out markers not seen"));
     }
     const std::vector<std::string_view> fields = TabFields(line);
     if (fields.size() < 2 || fields.size() > expected) {
-      return reader_.ErrorHere("the row has " + std::to_string(fields.size()) + " cells, not " +
-                               std::to_string(expected) + ", separated by tabs");
+      Fail(StrCat("the row has ", fields.size(), " cells, not ", expected, ", separated by tabs"));
     }
     double numbers[2] = {0.0, 0.0};
     for (int i = 0; i < 2; ++i) {
-      if (!ParseDouble(fields[i], &numbers[i])) {
-        return reader_.ErrorHere(std::string(i == 0 ? "Frame#: " : "Time: ") +
-                                 NumberProblem(fields[i]));
-      }
+      if (ParseDouble(fields[i], &numbers[i])) continue;
+      Fail((i == 0 ? "Frame#: " : "Time: ") + NumberProblem(fields[i]));
     }
-    if (MaybeError failed = CheckSequence(numbers[0], numbers[1], rows)) return failed;
+    CheckSequence(numbers[0], numbers[1], rows);
     for (std::size_t i = 0; i < row_.size(); ++i) {
       const std::string_view cell = i + 2 < fields.size() ? fields[i + 2] : "";
       if (cell.empty() || EqualsIgnoringCase(cell, "nan")) {
-        row_[i] = kNaN;
+        row_[i] = std::numeric_limits<double>::quiet_NaN();
       } else if (!ParseDouble(cell, &row_[i])) {
-        return reader_.ErrorHere(motion_.names[i / 3] + ": " + NumberProblem(cell) + kMissingCell);
+        Fail(motion_.names[i / 3] + ": " + NumberProblem(cell) + kMissingCell);
       }
     }
-    return TakeRow();
-  }
-
-  MaybeError TakeRow() {
     for (std::int64_t marker = 0; marker < num_markers_; ++marker) {
       const double* at = row_.data() + 3 * marker;
       const int missing = std::isnan(at[0]) + std::isnan(at[1]) + std::isnan(at[2]);
-      if (missing == 1 || missing == 2) {
-        return reader_.ErrorHere(motion_.names[marker] + ": " + std::to_string(missing) +
-                                 " of its 3 cells " + (missing == 1 ? "is" : "are") +
-                                 " missing: the row is cut or damaged; export the file again, or " +
-                                 "leave all 3 empty where the marker was not seen");
-      }
+      if (missing == 0 || missing == 3) continue;
+      Fail(StrCat(
+          motion_.names[marker], ": ", missing, " of its 3 cells ", missing == 1 ? "is" : "are",
+          " missing: the row is cut or damaged; export the file again, or leave all 3 empty where "
+          "the marker was not seen"));
     }
     for (std::size_t i = 0; i < motion_.chosen.size(); ++i) {
       const double* at = row_.data() + 3 * motion_.chosen[i];
       // Some programs write zeros where a point was not seen.
       motion_.positions[i].push_back(SeenPosition({at[0], at[1], at[2]}));
     }
-    return std::nullopt;
   }
 
   const PointReadOptions& options_;
@@ -328,16 +258,10 @@ class TrcReader {
 
 }  // namespace
 
-MaybeError ChoosePoints(const PointReadOptions& options, PointMotion* motion) {
-  if (!options.choose) {
-    motion->chosen.resize(motion->names.size());
-    std::iota(motion->chosen.begin(), motion->chosen.end(), 0);
-    return std::nullopt;
-  }
-  Result<std::vector<int>> chosen = options.choose(motion->names);
-  if (!chosen.ok()) return chosen.error();
-  motion->chosen = std::move(chosen.value());
-  return std::nullopt;
+void ChoosePoints(const PointReadOptions& options, PointMotion* motion) {
+  motion->chosen.resize(motion->names.size());
+  std::iota(motion->chosen.begin(), motion->chosen.end(), 0);
+  if (options.choose) motion->chosen = options.choose(motion->names);
 }
 
 Eigen::Vector3d SeenPosition(const Eigen::Vector3d& position) {
@@ -355,13 +279,9 @@ std::vector<TablePoint> PointsOf(const std::vector<std::string>& names) {
     const auto y = index.find(stem + axes[1]), z = index.find(stem + axes[2]);
     if (y == index.end() || z == index.end()) continue;
     if (axes == "123" && index.count(stem + "4") > 0) continue;
-    TablePoint point;
-    point.name = WithoutSeparator(stem);
-    if (point.name.empty()) continue;
-    point.columns[0] = static_cast<int>(i);
-    point.columns[1] = y->second;
-    point.columns[2] = z->second;
-    points.push_back(point);
+    const std::string name = stem.substr(0, stem.find_last_not_of("_.:- ") + 1);
+    if (name.empty()) continue;
+    points.push_back({name, {static_cast<int>(i), y->second, z->second}});
   }
   return points;
 }
@@ -372,31 +292,24 @@ bool IsForceColumn(const std::string& name) {
   return end < 3 || name[end - 3] != '_' || name[end - 2] != 'p';
 }
 
-namespace {
-
-// "left_v" or "left_f", and beside it "left_p" and "left_m": a platform's force, its centre of
-// pressure and its moments.
-bool IsOfPlatform(const std::string& name, const std::vector<std::string>& names) {
-  const std::string prefix = name.substr(0, name.size() - 1);
-  if (!prefix.empty() && prefix.back() != '_') return false;
-  const auto there = [&](char what) {
-    return std::find(names.begin(), names.end(), prefix + what) != names.end();
-  };
-  const bool force = there('v') || there('f');
-  return force && Holds("vfpm", name.substr(prefix.size()));
-}
-
-}  // namespace
-
+// Beside names as "force", a platform's force ("left_v" or "left_f"), and beside it its centre of
+// pressure and moments ("left_p", "left_m").
 PointMotion WithoutForces(const PointMotion& motion) {
   PointMotion points = motion;
   points.names.clear();
   points.chosen.clear();
   points.positions.clear();
+  const auto there = [&motion](const std::string& name) {
+    return std::find(motion.names.begin(), motion.names.end(), name) != motion.names.end();
+  };
   for (std::size_t i = 0; i < motion.names.size(); ++i) {
     const std::string& name = motion.names[i];
     if (Holds(name, "force") || Holds(name, "torque") || Holds(name, "moment")) continue;
-    if (IsOfPlatform(name, motion.names)) continue;
+    const std::string prefix = name.substr(0, name.size() - 1);
+    if (Holds("vfpm", name.substr(prefix.size())) && (prefix.empty() || prefix.back() == '_') &&
+        (there(prefix + 'v') || there(prefix + 'f'))) {
+      continue;
+    }
     points.chosen.push_back(static_cast<int>(points.names.size()));
     points.names.push_back(name);
     points.positions.push_back(motion.positions[i]);
@@ -413,7 +326,7 @@ Result<PointMotion> ReadStoragePoints(const std::string& path, const PointReadOp
 }
 
 Result<PointMotion> ReadTrc(const std::string& path, const PointReadOptions& options) {
-  return TrcReader(path, options).Read();
+  return Caught([&] { return TrcReader(path, options).Read(); });
 }
 
 MaybeError WriteTrc(const std::string& path, const PointMotion& motion) {
@@ -427,17 +340,17 @@ MaybeError WriteTrc(const std::string& path, const PointMotion& motion) {
   text +=
       "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\t"
       "OrigNumFrames\n";
-  text += rate + '\t' + rate + '\t' + frames + '\t' + std::to_string(markers) + '\t' +
-          NameOf(motion.unit.value_or(LengthUnit::kMillimetre)) + '\t' + rate + "\t1\t" + frames +
-          "\nFrame#\tTime";
+  text += StrCat(rate, '\t', rate, '\t', frames, '\t', markers, '\t',
+                 NameOf(motion.unit.value_or(LengthUnit::kMillimetre)), '\t', rate, "\t1\t", frames,
+                 "\nFrame#\tTime");
   for (const std::string& name : motion.names) text += '\t' + name + "\t\t";
   text += "\n\t";
   for (std::size_t i = 1; i <= markers; ++i) {
-    for (const char* axis : {"\tX", "\tY", "\tZ"}) text += axis + std::to_string(i);
+    for (const char* axis : {"\tX", "\tY", "\tZ"}) text += StrCat(axis, i);
   }
   text += "\n\n";
   for (int frame = 0; frame < motion.num_frames(); ++frame) {
-    text += std::to_string(frame + 1) + '\t' + DoubleText(frame / motion.rate_hz);
+    text += StrCat(frame + 1, '\t', DoubleText(frame / motion.rate_hz));
     for (const auto& track : motion.positions) {
       for (int i = 0; i < 3; ++i) {
         text += '\t';

@@ -41,9 +41,7 @@ struct PointColumns {
 };
 
 struct PointReadOptions {
-  // Which points to keep, from all names; unset: all. Only those stay in memory where the file is
-  // text.
-  std::function<Result<std::vector<int>>(const std::vector<std::string>& names)> choose;
+  Choice choose;  // of points; only those stay in memory where the file is text
   // Tables: the column of the time in s; empty: a column called time, Time, t, ... where there is
   // one.
   std::string time_column;
@@ -51,8 +49,8 @@ struct PointReadOptions {
   std::vector<PointColumns> columns;
 };
 
-// The points that the options choose of motion->names; without a choice all.
-MaybeError ChoosePoints(const PointReadOptions& options, PointMotion* motion);
+// Sets the points that the options choose of motion->names, or throws the choice's Error.
+void ChoosePoints(const PointReadOptions& options, PointMotion* motion);
 
 // NaN where a point was not seen: not finite, or zero in all coordinates.
 Eigen::Vector3d SeenPosition(const Eigen::Vector3d& position);

@@ -40,69 +40,55 @@ bool HoldsWords(std::string_view text, std::string_view words) {
   return !part || HoldsWords(rest, words);
 }
 
-// Error: another unit than a comment before it.
-MaybeError ReadComment(const LineReader& reader, std::string_view comment, PointMotion* motion) {
+// Throws an Error at another unit than that of a comment before it.
+void ReadComment(const LineReader& reader, std::string_view comment, PointMotion* motion) {
   if (Holds(comment, "framerate") && motion->rate_hz == 0.0) motion->rate_hz = NumberIn(comment);
   for (const LengthUnitRow& unit : kLengthUnits) {
     const std::string name = unit.name;
     if (HoldsWords(comment, "x/" + name) || Holds(comment, "x[" + name + "]") ||
         Holds(comment, "x(" + name + ")") || HoldsWords(comment, "in " + name)) {
       if (motion->unit && *motion->unit != unit.value) {
-        return reader.ErrorHere("lengths are in " + name + ", but in " + NameOf(*motion->unit) +
-                                " by a line before");
+        throw reader.ErrorHere("lengths are in " + name + ", but in " + NameOf(*motion->unit) +
+                               " by a line before");
       }
       motion->unit = unit.value;
-      return std::nullopt;
+      return;
     }
   }
-  return std::nullopt;
 }
 
-// Rows (person, frame, position) gathered into points.
-class TrajectoryRows {
- public:
-  // false: the person has that frame already.
-  bool Add(std::int64_t person, std::int64_t frame, const Eigen::Vector3d& position) {
-    const bool first = last_ < first_;
-    first_ = first ? frame : std::min(first_, frame);
-    last_ = first ? frame : std::max(last_, frame);
-    return people_[person].emplace(frame, position).second;
-  }
+using Tracks = std::map<std::int64_t, std::map<std::int64_t, Eigen::Vector3d>>;  // by id and frame
+using Times = std::map<std::int64_t, double>;                                    // s, of frames
 
-  // Sets names, chosen, positions and first_time_s (by rate_hz, which is set before).
-  MaybeError Fill(const PointReadOptions& options, PointMotion* motion) const {
-    if (people_.empty()) return Error{"the file contains no positions", motion->path};
-    std::vector<const std::map<std::int64_t, Eigen::Vector3d>*> tracks;
-    for (const auto& [id, track] : people_) {
-      motion->names.push_back(std::to_string(id));
-      tracks.push_back(&track);
-    }
-    if (MaybeError failed = ChoosePoints(options, motion)) return failed;
-    // Differences of whole numbers as text has them may overflow.
-    const double frames = static_cast<double>(last_) - static_cast<double>(first_) + 1.0;
-    std::size_t rows = 0;
-    for (const auto* track : tracks) rows += track->size();
-    if (frames * static_cast<double>(motion->chosen.size()) >
-        kFewFrames + kMostFramesPerRow * static_cast<double>(rows)) {
-      return Error{"frames go from " + std::to_string(first_) + " to " + std::to_string(last_) +
-                       ", which is too many for " + std::to_string(rows) + " rows",
-                   motion->path};
-    }
-    motion->first_time_s = static_cast<double>(first_) / motion->rate_hz;
-    const Eigen::Vector3d unseen =
-        Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-    for (int person : motion->chosen) {
-      std::vector<Eigen::Vector3d> track(static_cast<std::size_t>(frames), unseen);
-      for (const auto& [frame, position] : *tracks[person]) track[frame - first_] = position;
-      motion->positions.push_back(std::move(track));
-    }
-    return std::nullopt;
+// Sets names, chosen, positions and first_time_s (by rate_hz, which is set before).
+void TakeTracks(const Tracks& people, const PointReadOptions& options, PointMotion* motion) {
+  if (people.empty()) throw Error{"the file contains no positions", motion->path};
+  std::vector<const Tracks::mapped_type*> tracks;
+  std::int64_t first = people.begin()->second.begin()->first, last = first;
+  std::size_t rows = 0;
+  for (const auto& [id, track] : people) {
+    motion->names.push_back(std::to_string(id));
+    tracks.push_back(&track);
+    first = std::min(first, track.begin()->first);
+    last = std::max(last, track.rbegin()->first);
+    rows += track.size();
   }
-
- private:
-  std::map<std::int64_t, std::map<std::int64_t, Eigen::Vector3d>> people_;
-  std::int64_t first_ = 0, last_ = -1;
-};
+  ChoosePoints(options, motion);
+  // Differences of whole numbers as text has them may overflow.
+  const double frames = static_cast<double>(last) - static_cast<double>(first) + 1.0;
+  if (frames * static_cast<double>(motion->chosen.size()) >
+      kFewFrames + kMostFramesPerRow * static_cast<double>(rows)) {
+    throw Error{
+        StrCat("frames go from ", first, " to ", last, ", which is too many for ", rows, " rows"),
+        motion->path};
+  }
+  motion->first_time_s = static_cast<double>(first) / motion->rate_hz;
+  for (int person : motion->chosen) {
+    auto& track = motion->positions.emplace_back(static_cast<std::size_t>(frames),
+                                                 SeenPosition(Eigen::Vector3d::Zero()));  // unseen
+    for (const auto& [frame, position] : *tracks[person]) track[frame - first] = position;
+  }
+}
 
 // The cells of a row by what they hold; -1: none does.
 struct Columns {
@@ -114,14 +100,12 @@ std::vector<std::string_view> CellsOfRow(std::string_view line) {
   for (char separator : {';', ','}) {
     if (line.find(separator) != std::string_view::npos) return CellsOf(line, separator);
   }
-  std::vector<std::string_view> cells;
-  for (auto cell = NextToken(&line); !cell.empty(); cell = NextToken(&line)) cells.push_back(cell);
-  return cells;
+  return CellsOf(line, kBlanks);
 }
 
 // The columns that a header names, whatever unit it gives them ("x/cm"); none where it lacks one.
 std::optional<Columns> NamedColumns(std::string_view line) {
-  if (line.front() != '"' && !std::isalpha(static_cast<unsigned char>(line.front()))) {
+  if (line.empty() || (line[0] != '"' && !std::isalpha(static_cast<unsigned char>(line[0])))) {
     return std::nullopt;
   }
   const std::vector<std::string_view> cells = CellsOfRow(line);
@@ -137,10 +121,8 @@ std::optional<Columns> NamedColumns(std::string_view line) {
   return found;
 }
 
-using Times = std::map<std::int64_t, double>;  // s, of frames
-
-MaybeError ReadRow(const LineReader& reader, std::string_view line, const Columns& columns,
-                   TrajectoryRows* rows, Times* times) {
+void ReadRow(const LineReader& reader, std::string_view line, const Columns& columns,
+             Tracks* tracks, Times* times) {
   const std::vector<std::string_view> cells = CellsOfRow(line);
   const auto cell = [&cells](int column) {
     return column < 0 || column >= static_cast<int>(cells.size()) ? std::string_view()
@@ -151,9 +133,9 @@ MaybeError ReadRow(const LineReader& reader, std::string_view line, const Column
     const std::string_view token = cell(i == 0 ? columns.id : columns.frame);
     double number = 0.0;
     if (!ParseDouble(token, &number) || number != std::floor(number) || std::fabs(number) > 1e15) {
-      return reader.ErrorHere(std::string(i == 0 ? "the id" : "the frame") +
-                              " must be a whole number, not " + Quoted(token) +
-                              "; a row is: id frame x y z, or what a header names (id,frame,x,y)");
+      throw reader.ErrorHere(
+          StrCat(i == 0 ? "the id" : "the frame", " must be a whole number, not ", Quoted(token),
+                 "; a row is: id frame x y z, or what a header names (id,frame,x,y)"));
     }
     id[i] = static_cast<std::int64_t>(number);
   }
@@ -161,17 +143,16 @@ MaybeError ReadRow(const LineReader& reader, std::string_view line, const Column
   for (int axis = 0; axis < 3; ++axis) {
     const std::string_view token = cell(columns.axis[axis]);
     if (axis == 2 && token.empty()) break;
-    if (token.empty()) return reader.ErrorHere("the row is cut; a row is: id frame x y z");
+    if (token.empty()) throw reader.ErrorHere("the row is cut; a row is: id frame x y z");
     if (!ParseDouble(token, &position[axis])) {
-      return reader.ErrorHere(std::string(1, "xyz"[axis]) + ": " + NumberProblem(token));
+      throw reader.ErrorHere(std::string(1, "xyz"[axis]) + ": " + NumberProblem(token));
     }
   }
   if (columns.time >= 0 && !ParseDouble(cell(columns.time), &(*times)[id[1]])) {
-    return reader.ErrorHere("time: " + NumberProblem(cell(columns.time)));
+    throw reader.ErrorHere("time: " + NumberProblem(cell(columns.time)));
   }
-  if (rows->Add(id[0], id[1], position)) return std::nullopt;
-  return reader.ErrorHere("person " + std::to_string(id[0]) + " was in frame " +
-                          std::to_string(id[1]) + " before");
+  if ((*tracks)[id[0]].emplace(id[1], position).second) return;
+  throw reader.ErrorHere(StrCat("person ", id[0], " was in frame ", id[1], " before"));
 }
 
 // The ids that are written for the points.
@@ -191,79 +172,73 @@ std::vector<std::int64_t> TrajectoryIds(const std::vector<std::string>& names) {
 }  // namespace
 
 bool IsCrowdCsv(const std::string& path) {
-  LineReader reader;
-  std::string_view line = "#";
-  if (reader.Open(path)) return false;
-  while (Trimmed(line).front() == '#' && reader.NextNonBlank(&line)) continue;
-  return NamedColumns(line).has_value();
+  const auto named = Caught([&] {
+    LineReader reader(path);
+    std::string_view line = "#";
+    while (Trimmed(line).front() == '#' && reader.NextNonBlank(&line)) continue;
+    return NamedColumns(line).has_value();
+  });
+  return named.ok() && named.value();
 }
 
 Result<PointMotion> ReadTrajectoryText(const std::string& path, const PointReadOptions& options) {
-  LineReader reader;
-  if (MaybeError failed = reader.Open(path)) return *std::move(failed);
-  PointMotion motion;
-  motion.path = path;
-  TrajectoryRows rows;
-  Times times;
-  Columns columns;
-  std::string_view line;
-  while (reader.NextNonBlank(&line)) {
-    line = Trimmed(line);
-    if (line.front() == '#') {
-      if (MaybeError failed = ReadComment(reader, line.substr(1), &motion)) return *failed;
-      continue;
+  return Caught([&] {
+    LineReader reader(path);
+    PointMotion motion;
+    motion.path = path;
+    Tracks tracks;
+    Times times;
+    Columns columns;
+    for (std::string_view line; reader.NextNonBlank(&line);) {
+      line = Trimmed(line);
+      if (line.front() == '#') {
+        ReadComment(reader, line.substr(1), &motion);
+      } else if (const std::optional<Columns> named = NamedColumns(line)) {
+        columns = *named;
+        ReadComment(reader, line, &motion);
+      } else {
+        ReadRow(reader, line, columns, &tracks, &times);
+      }
     }
-    if (const std::optional<Columns> named = NamedColumns(line)) {
-      columns = *named;
-      if (MaybeError failed = ReadComment(reader, line, &motion)) return *failed;
-    } else if (MaybeError failed = ReadRow(reader, line, columns, &rows, &times)) {
-      return *std::move(failed);
+    if (!motion.unit) motion.unit = LengthUnit::kMetre;
+    if (motion.rate_hz == 0.0 && times.size() > 1) {
+      const auto &first = *times.begin(), &last = *times.rbegin();
+      motion.rate_hz = WholeFrameRate(static_cast<double>(last.first - first.first) /
+                                      (last.second - first.second));
     }
-  }
-  if (reader.error()) return *reader.error();
-  if (!motion.unit) motion.unit = LengthUnit::kMetre;
-  if (motion.rate_hz == 0.0 && times.size() > 1) {
-    const auto &first = *times.begin(), &last = *times.rbegin();
-    motion.rate_hz = WholeFrameRate(static_cast<double>(last.first - first.first) /
-                                    (last.second - first.second));
-  }
-  const std::string problem = FrameRateProblem(motion.rate_hz);
-  if (!problem.empty()) {
-    return Error{
-        "no comment gives the frames per second as a number; there must be a line such as '# "
-        "framerate: 16' at the top, or a column time (s)",
-        path};
-  }
-  if (MaybeError failed = rows.Fill(options, &motion)) return *std::move(failed);
-  motion.content_hash = reader.HashHex();
-  return motion;
+    if (!FrameRateProblem(motion.rate_hz).empty()) {
+      throw Error{
+          "no comment gives the frames per second as a number; there must be a line such as '# "
+          "framerate: 16' at the top, or a column time (s)",
+          path};
+    }
+    TakeTracks(tracks, options, &motion);
+    motion.content_hash = reader.HashHex();
+    return motion;
+  });
 }
 
 MaybeError WriteTrajectoryText(const std::string& path, const PointMotion& motion) {
-  AtomicFile file;
-  if (MaybeError failed = file.Open(path)) return failed;
   const std::vector<std::int64_t> ids = TrajectoryIds(motion.names);
   std::string text = "# framerate: " + DoubleText(motion.rate_hz) + "\n";
   for (std::size_t i = 0; i < ids.size(); ++i) {
     if (std::to_string(ids[i]) == motion.names[i]) continue;
-    text += "# person " + std::to_string(ids[i]) + ": " + motion.names[i] + "\n";
+    text += StrCat("# person ", ids[i], ": ", motion.names[i], "\n");
   }
   text += "# id\tframe\tx/m\ty/m\tz/m\n";
   for (std::size_t i = 0; i < ids.size(); ++i) {
     for (int frame = 0; frame < motion.num_frames(); ++frame) {
       const Eigen::Vector3d& position = motion.positions[i][frame];
       if (!position.allFinite()) continue;
-      text += std::to_string(ids[i]) + '\t' + std::to_string(frame);
+      text += StrCat(ids[i], '\t', frame);
       for (int axis = 0; axis < 3; ++axis) {
         text += '\t';
         AppendDouble(position[axis], &text);
       }
       text += '\n';
     }
-    file.Append(text);
-    text.clear();
   }
-  return file.Commit();
+  return WriteFileAtomically(path, text);
 }
 
 std::int64_t FirstFrame(const PointMotion& motion) {
@@ -275,9 +250,9 @@ Result<std::vector<CrowdPlace>> PlacesAt(const PointMotion& motion,
   const std::int64_t first = FirstFrame(motion), last = first + motion.num_frames() - 1;
   const std::int64_t frame = wanted.value_or(first);
   if (frame < first || frame > last) {
-    return Error{"there is no frame " + std::to_string(frame) + "; the file has those from " +
-                     std::to_string(first) + " to " + std::to_string(last),
-                 motion.path};
+    return Error{
+        StrCat("there is no frame ", frame, "; the file has those from ", first, " to ", last),
+        motion.path};
   }
   const double metres = MetresPer(motion.unit.value_or(LengthUnit::kMetre));
   std::vector<CrowdPlace> places;
@@ -287,7 +262,7 @@ Result<std::vector<CrowdPlace>> PlacesAt(const PointMotion& motion,
     places.push_back({motion.names[motion.chosen[i]], metres * position.head<2>()});
   }
   if (places.empty()) {
-    return Error{"nobody is there in frame " + std::to_string(frame), motion.path};
+    return Error{StrCat("nobody is there in frame ", frame), motion.path};
   }
   std::stable_sort(places.begin(), places.end(), [](const CrowdPlace& a, const CrowdPlace& b) {
     return a.position.x() != b.position.x() ? a.position.x() < b.position.x()
@@ -306,9 +281,7 @@ double MedianSpacing(const std::vector<CrowdPlace>& places) {
     }
     nearest.push_back(distance);
   }
-  const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2);
-  std::nth_element(nearest.begin(), middle, nearest.end());
-  return *middle;
+  return UpperMedian(std::move(nearest));
 }
 
 std::string OddSpacing(const std::vector<CrowdPlace>& places) {

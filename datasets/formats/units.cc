@@ -70,10 +70,12 @@ Result<Eigen::Matrix3d> AxesRotation(const std::string& up, const std::string& f
                  "", 0};
   }
   Eigen::Matrix3d rotation;
-  rotation.row(0) = x;
-  rotation.row(1) = z.cross(x);
-  rotation.row(2) = z;
+  rotation << x.transpose(), z.cross(x).transpose(), z.transpose();
   return rotation;
+}
+
+Eigen::Matrix3d AxesGiven(const std::string& up, const std::string& forward) {
+  return OrThrow(AxesRotation(up.empty() ? "z" : up, forward.empty() ? "x" : forward));
 }
 
 std::string FrameRateProblem(double fps) {

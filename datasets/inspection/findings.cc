@@ -8,6 +8,7 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
+#include "datasets/files/numeric_table.h"
 
 namespace pushid {
 namespace {
@@ -34,50 +35,13 @@ double NoiseOf(const Vectors& path, int axis) {
   for (size_t t = 2; t < path.size(); ++t) {
     size.push_back(std::fabs(path[t][axis] - 2.0 * path[t - 1][axis] + path[t - 2][axis]));
   }
-  const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
-  std::nth_element(size.begin(), middle, size.end());
-  return *middle / 0.6745 / std::sqrt(6.0);
-}
-
-struct Force {
-  Vectors rows;  // by frame of the recording
-  PushKind kind = PushKind::kExternal;
-  bool turns = false;  // whether any row has a torque about the ankles
-  int next = 0;        // the frame where a later push begins, or the recording ends
-};
-
-// The first push on a person and all that overlap it.
-Force FirstPush(const PendulumRecording& recording, int person) {
-  std::vector<const ScenePush*> pushes;
-  for (const ScenePush& push : recording.scene.pushes) {
-    if (push.person == person && !push.force.empty()) pushes.push_back(&push);
-  }
-  std::sort(pushes.begin(), pushes.end(),
-            [](auto* a, auto* b) { return a->start_frame < b->start_frame; });
-  Force force;
-  force.next = recording.num_frames();
-  if (pushes.empty()) return force;
-  force.kind = pushes[0]->kind;
-  force.rows.assign(recording.num_frames(), Eigen::Vector2d::Zero());
-  int end = pushes[0]->EndFrame();
-  for (const ScenePush* push : pushes) {
-    force.next = push->start_frame < end ? recording.num_frames() : push->start_frame;
-    if (push->start_frame >= end) break;
-    end = std::max(end, push->EndFrame());
-    const int rows = std::min(push->EndFrame(), recording.num_frames());
-    for (int t = push->start_frame; t < rows; ++t) {
-      const Vector4<double>& row = push->force[t - push->start_frame];
-      force.rows[t] += row.head<2>();
-      force.turns = force.turns || !row.tail<2>().isZero(0.0);
-    }
-  }
-  return force;
+  return UpperMedian(std::move(size)) / 0.6745 / std::sqrt(6.0);
 }
 
 class Comparison {
  public:
-  Comparison(const PendulumRecording& recording, int person, Force force)
-      : recording_(recording), person_(person), force_(std::move(force)), dt_(recording.scene.dt) {}
+  Comparison(const PendulumRecording& recording, int person)
+      : recording_(recording), person_(person), dt_(recording.scene.dt) {}
 
   std::optional<PushAndMotion> Compare() {
     // On ground that moves, the push does not decide when people set off.
@@ -96,18 +60,40 @@ class Comparison {
  private:
   double Mass() const { return recording_.scene.people[person_].body.mass; }
 
+  // Takes the first push on the person and all that overlap it; false: there is no impulse.
   bool FindPush() {
+    std::vector<const ScenePush*> pushes;
+    for (const ScenePush& push : recording_.scene.pushes) {
+      if (push.person == person_ && !push.force.empty()) pushes.push_back(&push);
+    }
+    if (pushes.empty()) return false;
+    std::sort(pushes.begin(), pushes.end(),
+              [](auto* a, auto* b) { return a->start_frame < b->start_frame; });
+    kind_ = pushes[0]->kind;
+    const int frames = recording_.num_frames();
+    force_.assign(frames, Eigen::Vector2d::Zero());
+    int end = pushes[0]->EndFrame();
+    for (const ScenePush* push : pushes) {
+      next_ = push->start_frame < end ? frames : push->start_frame;
+      if (push->start_frame >= end) break;
+      end = std::max(end, push->EndFrame());
+      for (int t = push->start_frame; t < std::min(push->EndFrame(), frames); ++t) {
+        const Vector4<double>& row = push->force[t - push->start_frame];
+        force_[t] += row.head<2>();
+        turns_ = turns_ || !row.tail<2>().isZero(0.0);
+      }
+    }
     impulse_.setZero();
     double all = 0.0, sum = 0.0;
-    for (const Eigen::Vector2d& row : force_.rows) {
+    for (const Eigen::Vector2d& row : force_) {
       impulse_ += dt_ * row;
       all += row.norm();
     }
     if (!(impulse_.norm() > 0.0)) return false;
     along_ = impulse_.normalized();
     start_ = end_ = -1;
-    for (int t = 0; t < static_cast<int>(force_.rows.size()); ++t) {
-      sum += force_.rows[t].norm();
+    for (int t = 0; t < frames; ++t) {
+      sum += force_[t].norm();
       if (start_ < 0 && sum >= kImpulseEnds * all) start_ = t;
       if (end_ < 0 && sum >= (1.0 - kImpulseEnds) * all) end_ = t + 1;
     }
@@ -117,11 +103,11 @@ class Comparison {
   // The point that carries the mass, smoothed, and its velocity, around the push; of a cart that is
   // pushed by itself the cart, behind which a pole lags.
   bool FindPath() {
-    const double hip = force_.turns ? 1.0 - kCartShare : 0.0;
+    const double hip = turns_ ? 1.0 - kCartShare : 0.0;
     const int frames = recording_.num_frames();
     half_ = std::max(1, static_cast<int>(std::lround(kHalfSmoothing / dt_)));
     first_ = std::max(0, start_ - static_cast<int>(kLookBefore / dt_));
-    last_ = std::min(force_.next, end_ + static_cast<int>(kLookAfter / dt_));
+    last_ = std::min(next_, end_ + static_cast<int>(kLookAfter / dt_));
     if (last_ - first_ < 2 * half_ + kSustained) return false;
     for (int t = 0; t < frames; ++t) {
       if (t >= first_ && t < last_ && !(recording_.Weight(person_, t) > 0.0)) return false;
@@ -161,15 +147,15 @@ class Comparison {
 
   void Gain(PushAndMotion* found) const {
     double gain = 0.0, error = 0.0;
-    if (force_.kind != PushKind::kExternal) {
+    if (kind_ != PushKind::kExternal) {
       // The push's rows are all that moves the person: their motion is compared with the recorded
       // one.
       double speed = 0.0, way = 0.0, squares = 0.0, product = 0.0;
       for (int t = start_; t <= std::min(end_, last_ - 1); ++t) {
         product += way * (path_[t] - path_[start_]).dot(along_);
         squares += way * way;
-        way += dt_ * speed + 0.5 * dt_ * dt_ * force_.rows[t].dot(along_) / Mass();
-        speed += dt_ * force_.rows[t].dot(along_) / Mass();
+        way += dt_ * speed + 0.5 * dt_ * dt_ * force_[t].dot(along_) / Mass();
+        speed += dt_ * force_[t].dot(along_) / Mass();
       }
       gain = squares > 0.0 ? product / squares : 1.0;
       error = squares > 0.0 ? noise_ * std::sqrt(2.0 / squares) : 0.0;
@@ -215,10 +201,10 @@ class Comparison {
   // The frame by which `gain` times the force alone has brought the mass as far as the onset.
   double FrameOfWay(double gain) const {
     double speed = 0.0, way = 0.0;
-    const int frames = static_cast<int>(force_.rows.size());
+    const int frames = static_cast<int>(force_.size());
     for (int t = 0; t < frames; ++t) {
       if (way > distance_) return t;
-      const double force = gain * force_.rows[t].dot(along_) / Mass();
+      const double force = gain * force_[t].dot(along_) / Mass();
       way += dt_ * speed + 0.5 * dt_ * dt_ * force;
       speed += dt_ * force;
     }
@@ -231,7 +217,7 @@ class Comparison {
       const double late = (start_ - onset) * dt_;
       if (late > kSurelyLate) found->push_late = late;
     }
-    if (force_.kind != PushKind::kExternal || found->push_late > 0.0) return;
+    if (kind_ != PushKind::kExternal || found->push_late > 0.0) return;
     const double soonest = FrameOfWay(kMostGain * std::max(found->gain, kUsualGain));
     const double latest = FrameOfWay(kSlowToMove * std::clamp(found->gain, kLeastGain, kSlideGain));
     const double shift = dt_ * (onset - FrameOfWay(std::max(found->gain, kLeastGain)));
@@ -241,8 +227,11 @@ class Comparison {
 
   const PendulumRecording& recording_;
   const int person_;
-  const Force force_;
   const double dt_;
+  Vectors force_;  // by frame of the recording
+  PushKind kind_ = PushKind::kExternal;
+  bool turns_ = false;  // whether any row has a torque about the ankles
+  int next_ = 0;        // the frame where a later push begins, or the recording ends
   Eigen::Vector2d impulse_, along_, rest_;
   int start_ = 0, end_ = 0, first_ = 0, last_ = 0, half_ = 1;  // frames; of the impulse, looked at
   Vectors path_, smooth_, velocity_;
@@ -336,8 +325,7 @@ class Judge {
     }
     if (speed <= kFastest) return;
     const std::string who = Who(n);
-    Add(FindingKind::kSpeed, (who.empty() ? "" : who + ", ") + "frame " + std::to_string(fastest),
-        speed);
+    Add(FindingKind::kSpeed, StrCat(who.empty() ? "" : who + ", ", "frame ", fastest), speed);
   }
 
   void LookAtMotion(int n, const PushAndMotion& motion) {
@@ -391,7 +379,7 @@ std::string Case(const Finding& finding, const char* unit) {
 }  // namespace
 
 std::optional<PushAndMotion> ComparePush(const PendulumRecording& recording, int person) {
-  return Comparison(recording, person, FirstPush(recording, person)).Compare();
+  return Comparison(recording, person).Compare();
 }
 
 double RestingForce(const ScenePush& push, double dt) {

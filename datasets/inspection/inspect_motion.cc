@@ -1,8 +1,10 @@
+// datasets: inspection of a motion.
 #include "datasets/inspection/inspect_motion.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
@@ -39,24 +41,16 @@ int LargestAxis(const Eigen::Vector3d& direction) {
   return axis;
 }
 
-// "-y": the same with its sign.
+// "-y".
 std::string AxisName(const Eigen::Vector3d& direction) {
   const int axis = LargestAxis(direction);
-  return std::string(direction[axis] < 0.0 ? "-" : "") + "xyz"[axis];
+  return StrCat(direction[axis] < 0.0 ? "-" : "", "xyz"[axis]);
 }
 
 constexpr double kTurned = 0.5;    // rad between the ankles' line at first and in the mean
 constexpr double kSideways = 0.8;  // rad between the way of a walk and where the person faces
 constexpr double kStride = 1.0;    // s, about
 constexpr double kWalked = 0.3;    // m; less has no direction
-
-// The axis nearest to the rod.
-Eigen::Vector3d UpOf(const Eigen::Vector3d& rod) {
-  Eigen::Vector3d up = Eigen::Vector3d::Zero();
-  const int axis = LargestAxis(rod);
-  up[axis] = rod[axis] < 0.0 ? -1.0 : 1.0;
-  return up;
-}
 
 // Across `up`; zero where it is not seen.
 Eigen::Vector3d Across(const Eigen::Vector3d& v, const Eigen::Vector3d& up) {
@@ -68,15 +62,7 @@ double Angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }
 
 std::string Degrees(double radians) {
-  return std::to_string(std::lround(radians * 180.0 / M_PI)) + " degrees";
-}
-
-// The farthest that the hip gets, at either end of the recording.
-Eigen::Vector3d WayOf(const Track& hip, const Eigen::Vector3d& up, int first) {
-  for (size_t t = hip.size(); t-- > static_cast<size_t>(first);) {
-    if (hip[t].allFinite()) return Across(hip[t] - hip[first], up);
-  }
-  return Eigen::Vector3d::Zero();
+  return StrCat(std::lround(radians * 180.0 / M_PI), " degrees");
 }
 
 // Frames in which all of the chosen points were seen have their mean, others NaN.
@@ -100,65 +86,6 @@ int LongestHidden(const PointMotion& motion, const std::vector<int>& chosen) {
     }
   }
   return longest;
-}
-
-struct Facing {
-  Eigen::Vector3d to_the_left = Eigen::Vector3d::Zero();
-  std::string by;     // "the pelvis", "the ankles"
-  std::string doubt;  // empty: none
-};
-
-// The facing by the pelvis at frame `first`; without one by the line between the ankles, averaged
-// over a second, as one foot is ahead in mid-stride. Doubtful where that line turns, or where the
-// person walks to its side. rod: from ankles to hip; metres: of the file's unit.
-Facing FacingOf(const PointMotion& motion, const PelvisSides& pelvis, const Track& hip,
-                const Track& left, const Track& right, const Eigen::Vector3d& rod, int first,
-                double metres) {
-  const Eigen::Vector3d up = UpOf(rod);
-  Facing facing;
-  if (pelvis.known()) {
-    const Eigen::Vector3d line =
-        MeanOf(motion, pelvis.left)[first] - MeanOf(motion, pelvis.right)[first];
-    facing.to_the_left = Across(line, up);
-    facing.by = "the pelvis";
-    if (!facing.to_the_left.isZero()) return facing;
-  }
-  const size_t stride = motion.rate_hz > 0.0 ? static_cast<size_t>(kStride * motion.rate_hz) : 1;
-  for (size_t t = first; t < std::min(left.size(), first + stride); ++t) {
-    facing.to_the_left += Across(left[t] - right[t], up);
-  }
-  facing.by = "the ankles";
-  const Eigen::Vector3d at_first = Across(left[first] - right[first], up);
-  const Eigen::Vector3d way = WayOf(hip, up, first);
-  const Eigen::Vector3d forward = facing.to_the_left.cross(up);
-  if (facing.to_the_left.isZero() || at_first.isZero()) {
-    facing.doubt = "the ankles are in one place";
-  } else if (Angle(at_first, facing.to_the_left) > kTurned) {
-    facing.doubt = "one foot is ahead, or the person turns: the line between the ankles turns by " +
-                   Degrees(Angle(at_first, facing.to_the_left));
-  } else if (metres * way.norm() > kWalked && Angle(way, forward) > kSideways) {
-    facing.doubt = "the hip goes " + Degrees(Angle(way, forward)) + " off it";
-  }
-  return facing;
-}
-
-// `to_project` takes the file's coordinates to metres, z up, x where the person faces.
-PersonSteps StepsOf(const PointMotion& motion, const PendulumJoints& joints,
-                    const Eigen::Matrix3d& to_project) {
-  const auto track = [&](const std::vector<int>& chosen) {
-    Track mean = MeanOf(motion, chosen);
-    for (Eigen::Vector3d& position : mean) position = to_project * position;
-    return mean;
-  };
-  // Loading does not use a toe or heel that is lost for long either.
-  const double gap = PreparationOptions{}.max_gap_s * motion.rate_hz;
-  RecordedPerson person;
-  for (const PendulumTrack& row : kPendulumTracks) {
-    const std::vector<int>& chosen = joints.*row.joints;
-    const bool lost = chosen.empty() || LongestHidden(motion, chosen) > gap;
-    if (row.required || !lost) person.*row.track = track(chosen);
-  }
-  return FindSteps(person, motion.rate_hz);
 }
 
 class MotionInspector {
@@ -213,47 +140,53 @@ class MotionInspector {
     std::stable_sort(hidden.begin(), hidden.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<std::string> texts;
-    for (const auto& [missing, name] : hidden)
-      texts.push_back(name + " " + std::to_string(missing));
-    found_.Warn("gaps in " + std::to_string(hidden.size()) + " of " +
-                std::to_string(motion_.positions.size()) +
-                " points; frames not seen: " + SomeOf(texts));
+    for (const auto& [missing, name] : hidden) texts.push_back(StrCat(name, " ", missing));
+    found_.Warn(StrCat("gaps in ", hidden.size(), " of ", motion_.positions.size(),
+                       " points; frames not seen: ", SomeOf(texts)));
   }
 
   void Body(const PendulumJoints& joints) {
-    const Track hip = MeanOf(motion_, joints.hip);
-    const Track left = MeanOf(motion_, joints.left_ankle);
-    const Track right = MeanOf(motion_, joints.right_ankle);
-    int first = 0;
+    hip_ = MeanOf(motion_, joints.hip);
+    left_ = MeanOf(motion_, joints.left_ankle);
+    right_ = MeanOf(motion_, joints.right_ankle);
     const int frames = motion_.num_frames();
-    while (first < frames && !(hip[first] + left[first] + right[first]).allFinite()) ++first;
+    const auto seen = [this](int t) { return (hip_[t] + left_[t] + right_[t]).allFinite(); };
+    while (first_ < frames && !seen(first_)) ++first_;
     Places(joints);
-    if (first == frames) {
-      found_.Warn("hip and both ankles are never visible together: there is no rod to fit");
-      return;
+    if (first_ == frames) {
+      return found_.Warn("hip and both ankles are never visible together: there is no rod to fit");
     }
-    if (first > 0) {
-      found_.Warn("hip and ankles are first seen together at frame " + std::to_string(first) +
-                  ": set first_frame to " + std::to_string(first) + " or later");
+    if (first_ > 0) {
+      found_.Warn(StrCat("hip and ankles are first seen together at frame ", first_,
+                         ": set first_frame to ", first_, " or later"));
     }
-    const Eigen::Vector3d rod = hip[first] - 0.5 * (left[first] + right[first]);
-    Unit(rod.norm());
-    const Facing facing = FacingOf(motion_, pelvis_, hip, left, right, rod, first, metres_);
-    Axes(rod, facing);
-    for (const Eigen::Vector3d& position : hip) {
-      found_.hip.push_back(metres_ * (position - hip[first]));
+    rod_ = hip_[first_] - 0.5 * (left_[first_] + right_[first_]);
+    Unit(rod_.norm());
+    Axes();
+    for (const Eigen::Vector3d& position : hip_) {
+      found_.hip.push_back(metres_ * (position - hip_[first_]));
     }
-    Onset(first, rod);
-    Start(first);
-    Steps(joints, facing.to_the_left, rod);
+    Onset();
+    Start();
+    Steps(joints);
   }
 
   // Finds steps in the person's own axes, forward where they face.
-  void Steps(const PendulumJoints& joints, const Eigen::Vector3d& to_the_left,
-             const Eigen::Vector3d& rod) {
-    const Result<Eigen::Matrix3d> turn = AxesRotation(up_, AxisName(to_the_left.cross(rod)));
+  void Steps(const PendulumJoints& joints) {
+    const Result<Eigen::Matrix3d> turn = AxesRotation(up_, AxisName(to_the_left_.cross(rod_)));
     if (!(motion_.rate_hz > 0.0) || !turn.ok()) return;
-    found_.steps = StepsOf(motion_, joints, metres_ * turn.value());
+    const Eigen::Matrix3d to_project = metres_ * turn.value();
+    // Loading does not use a toe or heel that is lost for long either.
+    const double gap = PreparationOptions{}.max_gap_s * motion_.rate_hz;
+    RecordedPerson person;
+    for (const PendulumTrack& row : kPendulumTracks) {
+      const std::vector<int>& chosen = joints.*row.joints;
+      const bool lost = chosen.empty() || LongestHidden(motion_, chosen) > gap;
+      if (!row.required && lost) continue;
+      person.*row.track = MeanOf(motion_, chosen);
+      for (Eigen::Vector3d& position : person.*row.track) position = to_project * position;
+    }
+    found_.steps = FindSteps(person, motion_.rate_hz);
     found_.Fact("steps", StepsText(*found_.steps, motion_.rate_hz));
   }
 
@@ -263,21 +196,20 @@ class MotionInspector {
       for (int index : chosen) text += (text.empty() ? "" : " + ") + motion_.names[index];
       return text;
     };
-    const auto both = [&](const char* what, const std::vector<int>& left,
-                          const std::vector<int>& right) {
-      if (left.empty() || right.empty()) return;
-      found_.Fact(what, names(left) + " (left), " + names(right) + " (right)");
-    };
     found_.Fact("hip", names(joints.hip));
-    both("ankles", joints.left_ankle, joints.right_ankle);
-    both("toes", joints.left_toe, joints.right_toe);
+    for (const auto& [what, left, right] :
+         {std::tuple("ankles", &joints.left_ankle, &joints.right_ankle),
+          std::tuple("toes", &joints.left_toe, &joints.right_toe)}) {
+      if (left->empty() || right->empty()) continue;
+      found_.Fact(what, names(*left) + " (left), " + names(*right) + " (right)");
+    }
     for (const std::vector<int>* place : {&joints.hip, &joints.left_ankle, &joints.right_ankle}) {
       for (int index : *place) {
         if (const int longest = LongestHidden(motion_, {index}); longest > 0) {
           found_.Warn(
-              motion_.names[index] + " is hidden for up to " + std::to_string(longest) + " frames" +
-              (motion_.rate_hz > 0.0 ? " (" + Seconds(longest / motion_.rate_hz) + ")" : "") +
-              ": --max_gap_s sets the longest gap that is interpolated");
+              StrCat(motion_.names[index], " is hidden for up to ", longest, " frames",
+                     motion_.rate_hz > 0.0 ? " (" + Seconds(longest / motion_.rate_hz) + ")" : "",
+                     ": --max_gap_s sets the longest gap that is interpolated"));
         }
       }
     }
@@ -311,14 +243,48 @@ class MotionInspector {
     }
   }
 
-  void Axes(const Eigen::Vector3d& rod, const Facing& facing) {
-    up_ = AxisName(rod);
-    const Eigen::Vector3d forward = facing.to_the_left.cross(rod);
+  // Sets the facing by the pelvis at the first frame; without one by the line between the ankles,
+  // averaged over a second, as one foot is ahead in mid-stride. Returns a doubt where that line
+  // turns, or where the person walks to its side.
+  std::string FindFacing(std::string* by) {
+    Eigen::Vector3d up = Eigen::Vector3d::Zero();  // the axis nearest to the rod
+    const int axis = LargestAxis(rod_);
+    up[axis] = rod_[axis] < 0.0 ? -1.0 : 1.0;
+    if (pelvis_.known()) {
+      *by = "the pelvis";
+      to_the_left_ = Across(
+          MeanOf(motion_, pelvis_.left)[first_] - MeanOf(motion_, pelvis_.right)[first_], up);
+      if (!to_the_left_.isZero()) return "";
+    }
+    *by = "the ankles";
+    const double rate = motion_.rate_hz;
+    const size_t stride = rate > 0.0 ? static_cast<size_t>(kStride * rate) : 1;
+    for (size_t t = first_; t < std::min(left_.size(), first_ + stride); ++t) {
+      to_the_left_ += Across(left_[t] - right_[t], up);
+    }
+    const Eigen::Vector3d at_first = Across(left_[first_] - right_[first_], up);
+    if (to_the_left_.isZero() || at_first.isZero()) return "the ankles are in one place";
+    if (Angle(at_first, to_the_left_) > kTurned) {
+      return "one foot is ahead, or the person turns: the line between the ankles turns by " +
+             Degrees(Angle(at_first, to_the_left_));
+    }
+    const auto last = std::find_if(hip_.rbegin(), hip_.rend(),
+                                   [](const Eigen::Vector3d& place) { return place.allFinite(); });
+    const Eigen::Vector3d way = Across(*last - hip_[first_], up), forward = to_the_left_.cross(up);
+    if (metres_ * way.norm() <= kWalked || Angle(way, forward) <= kSideways) return "";
+    return "the hip goes " + Degrees(Angle(way, forward)) + " off it";
+  }
+
+  void Axes() {
+    up_ = AxisName(rod_);
+    std::string by;
+    const std::string doubt = FindFacing(&by);
+    const Eigen::Vector3d forward = to_the_left_.cross(rod_);
     const std::string faces = forward.norm() > 0.0 ? AxisName(forward) : "?";
-    found_.Fact("axes", up_ + " is up, the person faces " + faces + " (by " + facing.by +
-                            (facing.doubt.empty() ? ")" : ", unsure)"));
-    if (!facing.doubt.empty()) {
-      found_.Warn("the facing direction is uncertain: " + facing.doubt +
+    found_.Fact("axes", up_ + " is up, the person faces " + faces + " (by " + by +
+                            (doubt.empty() ? ")" : ", unsure)"));
+    if (!doubt.empty()) {
+      found_.Warn("the facing direction is uncertain: " + doubt +
                   "; set \"forward\" according to the room");
     }
     if (up_ != "z") {
@@ -328,29 +294,28 @@ class MotionInspector {
     if (!motion_.up.empty() && motion_.up != "+" + up_ && motion_.up != up_) {
       found_.Warn("the file declares " + motion_.up + " as up, but the person stands along " + up_);
     }
-    const double lean = std::acos(std::fmin(1.0, rod.cwiseAbs().maxCoeff() / rod.norm()));
+    const double lean = std::acos(std::fmin(1.0, rod_.cwiseAbs().maxCoeff() / rod_.norm()));
     if (lean > 0.35) {
       found_.Warn("the person leans " + Rounded(lean * 180.0 / 3.14159265358979323846, 3) +
                   " degrees at the start");
     }
   }
 
-  void Start(int first) {
+  void Start() {
     if (!(motion_.rate_hz > 0.0)) return;
     const int window = std::max(2, static_cast<int>(kStaticTime * motion_.rate_hz));
-    const int last = std::min<int>(first + window, static_cast<int>(found_.hip.size()) - 1);
-    if (last <= first || !found_.hip[last].allFinite()) return;
+    const int last = std::min<int>(first_ + window, static_cast<int>(found_.hip.size()) - 1);
+    if (last <= first_ || !found_.hip[last].allFinite()) return;
     const double speed =
-        (found_.hip[last] - found_.hip[first]).norm() * motion_.rate_hz / (last - first);
+        (found_.hip[last] - found_.hip[first_]).norm() * motion_.rate_hz / (last - first_);
     const bool still = speed <= kStaticSpeed;
     const int soon = still ? last : last + window;
-    if (found_.onset_frame >= 0 && found_.onset_frame <= soon && PushedFromRest(first)) {
+    if (found_.onset_frame >= 0 && found_.onset_frame <= soon && PushedFromRest()) {
       found_.Fact("start", "at rest, and pushed within the first " +
                                Seconds(found_.onset_frame / motion_.rate_hz));
       return;
     }
-    found_.Fact("start",
-                std::string(still ? "static" : "moving") + " (hip " + Rounded(speed, 2) + " m/s)");
+    found_.Fact("start", StrCat(still ? "static" : "moving", " (hip ", Rounded(speed, 2), " m/s)"));
     if (!still) {
       found_.Warn(
           "the person moves at the start: skip the motion by first_frame, or set initial_velocity "
@@ -360,19 +325,19 @@ class MotionInspector {
 
   // Whether the hip gathers speed before the onset, as a push makes it do: a person who walks in is
   // as fast at first as later.
-  bool PushedFromRest(int first) const {
-    const int end = found_.onset_frame, step = std::max(1, (end - first) / 4);
+  bool PushedFromRest() const {
+    const int end = found_.onset_frame, step = std::max(1, (end - first_) / 4);
     const auto way = [&](int t) { return (found_.hip[t + step] - found_.hip[t]).norm(); };
     double longest = 0.0;
-    for (int t = first; t + step <= end; t += step) longest = std::max(longest, way(t));
-    return longest > 0.0 && way(first) < kFromRest * longest;
+    for (int t = first_; t + step <= end; t += step) longest = std::max(longest, way(t));
+    return longest > 0.0 && way(first_) < kFromRest * longest;
   }
 
   // The hip's first 2 cm across the up axis, as the propagation of pushes counts it.
-  void Onset(int first, const Eigen::Vector3d& rod) {
-    const int axis = LargestAxis(rod);
+  void Onset() {
+    const int axis = LargestAxis(rod_);
     Eigen::Vector3d farthest = Eigen::Vector3d::Zero();
-    for (std::size_t t = first; t < found_.hip.size(); ++t) {
+    for (std::size_t t = first_; t < found_.hip.size(); ++t) {
       Eigen::Vector3d across = found_.hip[t];
       if (!across.allFinite()) continue;
       across[axis] = 0.0;
@@ -387,12 +352,12 @@ class MotionInspector {
           " mm at most, and an onset is seen from 20 mm on: if there is a push, it is small");
       return;
     }
-    found_.Fact("onset", "the hip has moved 2 cm at frame " + std::to_string(found_.onset_frame) +
-                             (motion_.rate_hz > 0.0
-                                  ? " (" + Seconds(found_.onset_frame / motion_.rate_hz) + ")"
-                                  : "") +
-                             "; at most it moves " + Rounded(farthest.norm(), 3) +
-                             " m, mostly along " + AxisName(farthest));
+    found_.Fact("onset", StrCat("the hip has moved 2 cm at frame ", found_.onset_frame,
+                                motion_.rate_hz > 0.0
+                                    ? " (" + Seconds(found_.onset_frame / motion_.rate_hz) + ")"
+                                    : "",
+                                "; at most it moves ", Rounded(farthest.norm(), 3),
+                                " m, mostly along ", AxisName(farthest)));
   }
 
   // Warns of jumps of a point between frames, where metres are known.
@@ -408,17 +373,20 @@ class MotionInspector {
         if (way > largest) largest = way, where = t;  // false for NaN
       }
       if (largest * motion_.rate_hz < kJumpSpeed || largest < kSmallestJump) continue;
-      jumps.push_back(motion_.names[motion_.chosen[i]] + " " + Rounded(largest, 3) +
-                      " m at frame " + std::to_string(where));
+      jumps.push_back(StrCat(motion_.names[motion_.chosen[i]], " ", Rounded(largest, 3),
+                             " m at frame ", where));
     }
     if (!jumps.empty()) {
-      found_.Warn("jumps in " + std::to_string(jumps.size()) + " points: " + SomeOf(jumps));
+      found_.Warn(StrCat("jumps in ", jumps.size(), " points: ", SomeOf(jumps)));
     }
   }
 
   const PointMotion& motion_;
   const PelvisSides& pelvis_;
   Inspection& found_;
+  Track hip_, left_, right_;
+  int first_ = 0;  // the frame at which all of them are first seen
+  Eigen::Vector3d rod_, to_the_left_ = Eigen::Vector3d::Zero();
   double metres_ = 0.0;  // 0: not known
   std::string up_;
 };

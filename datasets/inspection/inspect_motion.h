@@ -1,4 +1,4 @@
-// datasets: what can be seen of a motion before anything is fitted.
+// datasets: inspection of a motion before anything is fitted.
 #pragma once
 
 #include <optional>

@@ -34,80 +34,70 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kInMillimetres = 1000.0, kDegrees = 180.0 / M_PI;
 
-InspectedGround GroundOf(const ManifestRecording& entry, const Recording& recording) {
-  InspectedGround ground;
-  ground.recording = entry.id;
-  ground.kind = entry.ground.csv.empty() ? "markers" : NameOf(entry.ground.quantity);
-  ground.rate_hz = recording.fps;
-  if (!entry.ground.csv.empty()) {
-    const Result<GroundTracks> tracks = GroundOfCsv(entry);
-    if (tracks.ok()) ground.rate_hz = tracks.value().rate_hz;
-  }
-  const std::vector<GroundPose>& poses = recording.ground;
-  for (size_t t = 0; t < poses.size(); ++t) {
-    ground.farthest_m = std::max(ground.farthest_m, poses[t].head<2>().norm());
-    ground.peak_tilt_rad = std::max(ground.peak_tilt_rad, poses[t].tail<2>().norm());
-    if (t == 0 || t + 1 == poses.size()) continue;
-    const GroundPose second = poses[t + 1] - 2.0 * poses[t] + poses[t - 1];
-    ground.peak_acceleration =
-        std::max(ground.peak_acceleration, second.head<2>().norm() * recording.fps * recording.fps);
-  }
-  return ground;
-}
-
-InspectedPlates PlatesOf(const ManifestRecording& entry, const ManifestPlates& plates,
-                         const RecordedPerson& person) {
-  InspectedPlates found{entry.id, person.subject_id, NameOf(plates.use)};
-  const Result<PlateTracks> tracks = ReadPlates(entry, plates, person);
-  if (tracks.ok()) {
-    found.platforms = tracks.value().platforms;
-    found.rate_hz = tracks.value().rate_hz;
-  }
-  double vertical = 0.0;
-  int pressed = 0;
-  for (const PlateSample& sample : person.plates) {
-    if (sample.weight <= 0.0) continue;
-    const Eigen::Vector2d centre = sample.centre.head<2>();
-    found.least = pressed == 0 ? centre : Eigen::Vector2d(found.least.cwiseMin(centre));
-    found.most = pressed == 0 ? centre : Eigen::Vector2d(found.most.cwiseMax(centre));
-    vertical += sample.force.z();
-    ++pressed;
-  }
-  if (pressed > 0) found.weight_ratio = vertical / pressed / (person.mass_kg * kGravity);
-  return found;
-}
-
 std::string Span(double least, double most) {
   return Rounded(kInMillimetres * least, 3) + " to " + Rounded(kInMillimetres * most, 3) + " mm";
 }
 
-Json Two(const Eigen::Vector2d& v) { return Json::array({v.x(), v.y()}); }
+// How the ground of a recording moved: in its file, and at the frames.
+void InspectGround(const ManifestRecording& entry, const Recording& recording, Inspection* found) {
+  const bool markers = entry.ground.csv.empty();
+  const std::string kind = markers ? "markers" : NameOf(entry.ground.quantity);
+  const double fps = recording.fps, rate = markers ? fps : GroundOfCsv(entry).rate_hz;
+  double farthest = 0.0, acceleration = 0.0, tilt = 0.0;
+  const std::vector<GroundPose>& poses = recording.ground;
+  for (size_t t = 0; t < poses.size(); ++t) {
+    farthest = std::max(farthest, poses[t].head<2>().norm());
+    tilt = std::max(tilt, poses[t].tail<2>().norm());
+    if (t == 0 || t + 1 == poses.size()) continue;
+    const GroundPose second = poses[t + 1] - 2.0 * poses[t] + poses[t - 1];
+    acceleration = std::max(acceleration, second.head<2>().norm() * fps * fps);
+  }
+  found->Fact("ground", entry.id + ": " + kind + " at " + Rounded(rate, 5) + " per second, up to " +
+                            Rounded(kInMillimetres * farthest, 3) + " mm, " +
+                            Rounded(acceleration, 3) + " m/s^2 and " + Rounded(kDegrees * tilt, 3) +
+                            " degrees of tilt");
+  found->ground.push_back({{"recording", entry.id},
+                           {"kind", kind},
+                           {"rate_hz", rate},
+                           {"farthest_m", farthest},
+                           {"peak_acceleration_m_s2", acceleration},
+                           {"peak_tilt_rad", tilt}});
+}
 
-// Ground and platforms of a recording as it was read from its entry, with a fact for each.
-void InspectLaboratory(const ManifestRecording& entry, const Recording& recording,
-                       Inspection* found) {
-  if (entry.ground.given()) {
-    const InspectedGround ground = GroundOf(entry, recording);
-    found->Fact("ground", entry.id + ": " + ground.kind + " at " + Rounded(ground.rate_hz, 5) +
-                              " per second, up to " +
-                              Rounded(kInMillimetres * ground.farthest_m, 3) + " mm, " +
-                              Rounded(ground.peak_acceleration, 3) + " m/s^2 and " +
-                              Rounded(kDegrees * ground.peak_tilt_rad, 3) + " degrees of tilt");
-    found->grounds.push_back(ground);
+// The platforms under a person: their file, and where and how much they are pressed at the frames.
+void InspectPlates(const ManifestRecording& entry, const ManifestPlates& plates,
+                   const RecordedPerson& person, Inspection* found) {
+  int platforms = 0, pressed = 0;
+  double rate = 0.0, vertical = 0.0;
+  // Platforms that are not used may be in a file that cannot be read.
+  const auto tracks = Caught([&] { return ReadPlates(entry, plates, person); });
+  if (tracks.ok()) platforms = tracks.value().platforms, rate = tracks.value().rate_hz;
+  Eigen::Vector2d least(0.0, 0.0), most(0.0, 0.0);  // of the centre of pressure
+  for (const PlateSample& sample : person.plates) {
+    if (sample.weight <= 0.0) continue;
+    const Eigen::Vector2d centre = sample.centre.head<2>();
+    least = pressed == 0 ? centre : Eigen::Vector2d(least.cwiseMin(centre));
+    most = pressed == 0 ? centre : Eigen::Vector2d(most.cwiseMax(centre));
+    vertical += sample.force.z();
+    ++pressed;
   }
-  for (const ManifestPlates& plates : entry.plates) {
-    const InspectedPlates seen =
-        PlatesOf(entry, plates, recording.people[static_cast<size_t>(plates.person)]);
-    std::string text = entry.id + ", " + seen.person + ": " + std::to_string(seen.platforms) +
-                       " at " + Rounded(seen.rate_hz, 5) + " per second, ";
-    text += plates.use == PlateUse::kNone
-                ? "not used"
-                : "measured: mean vertical force " + Rounded(seen.weight_ratio, 4) +
-                      " of the weight, centre of pressure " + Span(seen.least.x(), seen.most.x()) +
-                      " forward and " + Span(seen.least.y(), seen.most.y()) + " to the left";
-    found->Fact("force plates", text);
-    found->plates.push_back(seen);
-  }
+  const double ratio = pressed > 0 ? vertical / pressed / (person.mass_kg * kGravity) : 0.0;
+  found->Fact("force plates",
+              StrCat(entry.id, ", ", person.subject_id, ": ", platforms, " at ", Rounded(rate, 5),
+                     " per second, ",
+                     plates.use == PlateUse::kNone
+                         ? "not used"
+                         : "measured: mean vertical force " + Rounded(ratio, 4) +
+                               " of the weight, centre of pressure " + Span(least.x(), most.x()) +
+                               " forward and " + Span(least.y(), most.y()) + " to the left"));
+  found->plates.push_back({{"recording", entry.id},
+                           {"person", person.subject_id},
+                           {"use", NameOf(plates.use)},
+                           {"platforms", platforms},
+                           {"rate_hz", rate},
+                           {"weight_ratio", ratio},
+                           {"centre_least_m", {least.x(), least.y()}},
+                           {"centre_most_m", {most.x(), most.y()}}});
 }
 
 constexpr std::size_t kMostSignals = 6;  // in the picture
@@ -149,34 +139,34 @@ void LookAtAnalog(const C3dFile& file, Inspection* found) {
   found->Fact("analog", ListOfNames(names) + " at " + Rounded(file.analog_rate_hz) +
                             " per second, in " + ListOfNames({units.begin(), units.end()}));
   for (const C3dAnalogChannel& channel : file.analog) {
-    if (channel.unit == "N" && file.platforms.empty()) {
-      AddForce(channel.name, file.analog_rate_hz, channel.samples, found);
-    }
+    const std::optional<double> newtons = NewtonsIn(channel.unit);
+    if (!newtons || !file.platforms.empty()) continue;
+    std::vector<double> force = channel.samples;
+    for (double& sample : force) sample *= *newtons;
+    AddForce(channel.name, file.analog_rate_hz, std::move(force), found);
   }
 }
 
 void LookAtPlatforms(const C3dFile& file, Inspection* found) {
-  const std::string up = PointsOfC3d(file).value().up;
-  const Eigen::Matrix3d axes =
-      AxesRotation(up.empty() ? "z" : up, up.find('x') == std::string::npos ? "x" : "y").value();
+  const std::string up = OrThrow(PointsOfC3d(file)).up;
+  const Eigen::Matrix3d axes = AxesGiven(up, up.find('x') == std::string::npos ? "x" : "y");
   const LengthUnit unit = FromName<LengthUnit>(file.point_unit).value_or(LengthUnit::kMillimetre);
   for (std::size_t i = 0; i < file.platforms.size(); ++i) {
-    const std::string name = "platform:" + std::to_string(i + 1);
-    const Result<PlatformRecord> platform = EvaluatePlatform(file, static_cast<int>(i), unit);
-    if (!platform.ok()) {
-      found->Warn(platform.error().message);
+    const std::string name = StrCat("platform:", i + 1);
+    const Result<PlatformRecord> evaluated = EvaluatePlatform(file, static_cast<int>(i), unit);
+    if (!evaluated.ok()) {
+      found->Warn(evaluated.error().message);
       continue;
     }
-    const Eigen::Vector3d& normal = platform.value().normal;
+    const PlatformRecord& platform = evaluated.value();
+    const Eigen::Vector3d& normal = platform.normal;
     std::vector<double> pressing;
-    for (const Eigen::Vector3d& force : platform.value().force) {
-      pressing.push_back(force.dot(normal));
-    }
-    found->Fact(name + " type", std::to_string(file.platforms[i].type) + ", surface faces (" +
-                                    Rounded(normal.x(), 2) + ", " + Rounded(normal.y(), 2) + ", " +
-                                    Rounded(normal.z(), 2) + ")");
-    AddForce(name, platform.value().rate_hz, std::move(pressing), found);
-    for (const std::string& warning : platform.value().warnings) found->Warn(warning);
+    for (const Eigen::Vector3d& force : platform.force) pressing.push_back(force.dot(normal));
+    found->Fact(name + " type",
+                StrCat(file.platforms[i].type, ", surface faces (", Rounded(normal.x(), 2), ", ",
+                       Rounded(normal.y(), 2), ", ", Rounded(normal.z(), 2), ")"));
+    AddForce(name, platform.rate_hz, std::move(pressing), found);
+    for (const std::string& warning : platform.warnings) found->Warn(warning);
     if (file.platforms[i].origin.z() > 0.0 && file.platforms[i].type != 1) {
       found->Warn(name + " has its sensors above its surface (ORIGIN z > 0): ORIGIN is negated");
     }
@@ -184,7 +174,7 @@ void LookAtPlatforms(const C3dFile& file, Inspection* found) {
       found->Warn(name +
                   " faces down: is the order of CORNERS (+x, +y), (-x, +y), (-x, -y), (+x, -y)?");
     }
-    if (!platform.value().outside.empty()) found->Warn(platform.value().outside);
+    if (!platform.outside.empty()) found->Warn(platform.outside);
   }
 }
 
@@ -203,10 +193,9 @@ std::int64_t FullestFrame(const PointMotion& motion) {
 
 // People, times, how close they stand.
 void InspectCrowd(const PointMotion& motion, Inspection* found) {
-  found->Fact("people", std::to_string(motion.names.size()) + ": " + ListOfNames(motion.names));
-  found->Fact("frames", std::to_string(motion.num_frames()) + " at " + Rounded(motion.rate_hz) +
-                            " per second, from the file's frame " +
-                            std::to_string(FirstFrame(motion)));
+  found->Fact("people", StrCat(motion.names.size(), ": ", ListOfNames(motion.names)));
+  found->Fact("frames", StrCat(motion.num_frames(), " at ", Rounded(motion.rate_hz),
+                               " per second, from the file's frame ", FirstFrame(motion)));
   std::vector<std::string> gaps;
   for (std::size_t i = 0; i < motion.positions.size(); ++i) {
     const std::vector<Eigen::Vector3d>& track = motion.positions[i];
@@ -214,38 +203,39 @@ void InspectCrowd(const PointMotion& motion, Inspection* found) {
     const auto first = std::find_if(track.begin(), track.end(), seen);
     const auto end = std::find_if(track.rbegin(), track.rend(), seen).base();
     const auto missing = first < end ? std::count_if(first, end, std::not_fn(seen)) : 0;
-    if (missing > 0) gaps.push_back(motion.names[motion.chosen[i]] + " " + std::to_string(missing));
+    if (missing > 0) gaps.push_back(StrCat(motion.names[motion.chosen[i]], " ", missing));
   }
-  if (!gaps.empty())
+  if (!gaps.empty()) {
     found->Warn("frames not seen between a person's first and last: " + ListOfNames(gaps));
+  }
   const std::int64_t frame = FullestFrame(motion);
   const Result<std::vector<CrowdPlace>> places = PlacesAt(motion, frame);
   if (!places.ok()) return;
   const std::size_t people = places.value().size();
-  found->Fact("fullest frame",
-              std::to_string(frame) + ": " + std::to_string(people) + " people" +
-                  (people < 2 ? ""
-                              : ", the nearest other " + Rounded(MedianSpacing(places.value()), 3) +
-                                    " m away (median)"));
+  found->Fact("fullest frame", StrCat(frame, ": ", people, " people",
+                                      people < 2 ? ""
+                                                 : ", the nearest other " +
+                                                       Rounded(MedianSpacing(places.value()), 3) +
+                                                       " m away (median)"));
   const std::string odd = OddSpacing(places.value());
   if (!odd.empty()) found->Warn(odd);
-  found->Fact("use",
-              "pushid-inspect --wave measures how a push travels; pushid-formation --formation=" +
-                  ShellQuoted(motion.path) + " --formation_frame=" + std::to_string(frame) +
-                  " places people as they stand there");
+  found->Fact(
+      "use",
+      StrCat("pushid-inspect --wave measures how a push travels; pushid-formation --formation=",
+             ShellQuoted(motion.path), " --formation_frame=", frame,
+             " places people as they stand there"));
 }
 
 // Facts about the manifest, and a warning for every recording that cannot be read and everything
 // unusual about the others.
-MaybeError InspectManifest(Inspection* found) {
-  const Result<Manifest> manifest = ReadManifests(found->path);
-  if (!manifest.ok()) return manifest.error();
+void InspectManifest(Inspection* found) {
+  const Manifest manifest = OrThrow(ReadManifests(found->path));
   std::map<std::string, int> settings, formats;
   std::set<std::string> subjects;
-  int pushed = 0, read = 0;
+  int pushed = 0;
   std::vector<PendulumRecording> pendulums;
   std::vector<Finding> facing;
-  for (const ManifestRecording& entry : manifest.value().recordings) {
+  for (const ManifestRecording& entry : manifest.recordings) {
     ++settings[entry.labels.setting()];
     ++formats[entry.plates_alone ? "force plates alone" : Title(entry.motion_format)];
     for (const ManifestSubject& subject : entry.subjects) subjects.insert(subject.id);
@@ -253,16 +243,20 @@ MaybeError InspectManifest(Inspection* found) {
     Warnings warnings;
     LoadOptions options;
     options.plates_alone = true;
-    const Result<Recording> recording = LoadRecording(manifest.value(), entry, options, &warnings);
+    const Result<Recording> read = LoadRecording(manifest, entry, options, &warnings);
     for (const Warning& warning : warnings) found->Warn(warning.text);
-    if (recording.ok()) ++read;
-    if (recording.ok()) {
-      InspectLaboratory(entry, recording.value(), found);
-      pendulums.push_back(MakePendulumRecording(recording.value()));
-      const std::vector<Finding> more = FacingFindings(recording.value());
-      facing.insert(facing.end(), more.begin(), more.end());
+    if (!read.ok()) {
+      found->Warn(read.error().ToString());
+      continue;
     }
-    if (!recording.ok()) found->Warn(recording.error().ToString());
+    const Recording& recording = read.value();
+    if (entry.ground.given()) InspectGround(entry, recording, found);
+    for (const ManifestPlates& plates : entry.plates) {
+      InspectPlates(entry, plates, recording.people[plates.person], found);
+    }
+    pendulums.push_back(MakePendulumRecording(recording));
+    const std::vector<Finding> more = FacingFindings(recording);
+    facing.insert(facing.end(), more.begin(), more.end());
   }
   std::vector<Finding> findings = FindingsOf(pendulums);
   findings.insert(findings.end(), facing.begin(), facing.end());
@@ -270,16 +264,14 @@ MaybeError InspectManifest(Inspection* found) {
   for (const std::string& text : MassTexts(pendulums)) found->Warn(text);
   const auto counts = [](const std::map<std::string, int>& of) {
     std::vector<std::string> texts;
-    for (const auto& [name, count] : of) texts.push_back(name + " " + std::to_string(count));
+    for (const auto& [name, count] : of) texts.push_back(StrCat(name, " ", count));
     return ListOfNames(texts);
   };
-  const std::size_t all = manifest.value().recordings.size();
-  found->Fact("recordings", std::to_string(all) + ", " + std::to_string(read) + " can be read, " +
-                                std::to_string(pushed) + " have a push");
+  found->Fact("recordings", StrCat(manifest.recordings.size(), ", ", pendulums.size(),
+                                   " can be read, ", pushed, " have a push"));
   found->Fact("settings", counts(settings));
   found->Fact("formats", counts(formats));
   found->Fact("subjects", ListOfNames({subjects.begin(), subjects.end()}));
-  return std::nullopt;
 }
 
 // A warning where hip and ankles cannot be found.
@@ -300,23 +292,21 @@ void LookAtPoints(const PointMotion& motion, const ColumnMapping& mapping, Inspe
 
 // A joint of a BVH file is never hidden, so that only hip, its sides and the feet are kept: files
 // of a gigabyte fit.
-MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
+void LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
   std::optional<PendulumJoints> places;  // indices into the joints kept
   PelvisSides pelvis;
   std::string body;
   std::vector<std::string> names;
   BvhPositionOptions options;
   options.metres_per_unit = 1.0;  // as it stands: the unit is what is to be found
-  options.choose_joints = [&](const BvhSkeleton& skeleton) -> Result<std::vector<int>> {
+  options.choose_joints = [&](const BvhSkeleton& skeleton) {
     names = skeleton.Names();
-    const Result<PendulumJoints> joints =
-        ChoosePendulumJoints(found->path, skeleton, mapping.joints);
+    const auto joints = ChoosePendulumJoints(found->path, skeleton, mapping.joints);
     if (!joints.ok()) {
       found->Warn(joints.error().message);
       return std::vector<int>{0};
     }
-    const Result<BodyRoles> roles =
-        ChooseRoles(found->path, names, &skeleton, joints.value(), mapping.joints);
+    const auto roles = ChooseRoles(found->path, names, &skeleton, joints.value(), mapping.joints);
     body = RolesText(roles);
     pelvis = SidesOf(roles);
     std::vector<int> kept;
@@ -331,94 +321,71 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
     keep(&pelvis.right);
     return kept;
   };
-  Result<BvhPositions> bvh = ReadBvhPositions(found->path, options);
-  if (!bvh.ok()) return bvh.error();
+  BvhPositions bvh = OrThrow(ReadBvhPositions(found->path, options));
   PointMotion motion;
   motion.path = found->path;
-  motion.rate_hz = 1.0 / bvh.value().frame_time_s;
-  for (int joint : bvh.value().joints) motion.names.push_back(names[joint]);
+  motion.rate_hz = 1.0 / bvh.frame_time_s;
+  for (int joint : bvh.joints) motion.names.push_back(names[joint]);
   ChoosePoints({}, &motion);
-  motion.positions = std::move(bvh.value().positions);
+  motion.positions = std::move(bvh.positions);
   found->Fact("joints", ListOfNames(names));
   if (!body.empty()) found->Fact("body", body);
   InspectMotion(motion, places, pelvis, found);
-  return std::nullopt;
 }
 
-MaybeError LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
-  const Result<C3dFile> read = ReadC3d(found->path, true);
-  if (!read.ok()) return read.error();
-  const C3dFile& file = read.value();
+void LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
+  const C3dFile file = OrThrow(ReadC3d(found->path, true));
   found->format += ", " + NameOf(file.processor) + (file.floating ? ", floats" : ", integers");
   if (file.num_frames() < file.announced_frames) {
-    found->Warn("the file ends after " + std::to_string(file.num_frames()) + " of " +
-                std::to_string(file.announced_frames) +
-                " frames: it is truncated and cannot be fitted");
+    found->Warn(StrCat("the file ends after ", file.num_frames(), " of ", file.announced_frames,
+                       " frames: it is truncated and cannot be fitted"));
   }
-  if (!file.points.empty()) LookAtPoints(PointsOfC3d(file).value(), mapping, found);
+  if (!file.points.empty()) LookAtPoints(OrThrow(PointsOfC3d(file)), mapping, found);
   if (!file.analog.empty()) LookAtAnalog(file, found);
   LookAtPlatforms(file, found);
   for (const C3dEvent& event : file.events) {
     found->Fact("event", Rounded(event.time_s, 4) + " s " + event.label +
                              (event.context.empty() ? "" : " (" + event.context + ")"));
   }
-  return std::nullopt;
 }
 
-MaybeError LookAtCrowd(MotionFormat format, Inspection* found) {
-  const Result<PointMotion> motion = ReadPointMotion(found->path, format);
-  if (!motion.ok()) return motion.error();
-  InspectCrowd(motion.value(), found);
-  return std::nullopt;
-}
-
-MaybeError LookAtPush(Inspection* found) {
-  const Result<PushRows> read = ReadPushCsv(found->path);
-  if (!read.ok()) return read.error();
-  const std::vector<Eigen::Vector4d>& force = read.value().force;
+void LookAtPush(Inspection* found) {
+  const PushRows push = OrThrow(ReadPushCsv(found->path));
   found->format = "push CSV";
   double peak = 0.0;
-  for (const Eigen::Vector4d& row : force) peak = std::max(peak, row.head<2>().norm());
-  found->Fact("rows", std::to_string(force.size()) + ", one per frame of its recording");
-  if (!read.value().has_torques) {
+  for (const Eigen::Vector4d& row : push.force) peak = std::max(peak, row.head<2>().norm());
+  found->Fact("rows", StrCat(push.force.size(), ", one per frame of its recording"));
+  if (!push.has_torques) {
     found->Fact("height", "the manifest's push_height_m, or the hip: there are no torques");
   }
   found->Fact("peak", Rounded(peak, 3) + " N");
-  return std::nullopt;
 }
 
-MaybeError LookAtSensor(Inspection* found) {
-  Result<SensorRecord> record = ReadSensorCsv(found->path);
-  if (!record.ok()) return record.error();
+void LookAtSensor(Inspection* found) {
+  SensorRecord record = OrThrow(ReadSensorCsv(found->path));
   found->format = "sensor CSV";
-  const std::vector<double>& time = record.value().time_s;
+  const std::vector<double>& time = record.time_s;
   const double rate = (time.size() - 1) / (time.back() - time.front());
-  found->Fact("samples", std::to_string(time.size()) + " at " + Rounded(rate, 5) +
-                             " per second, from " + Rounded(time.front()) + " s");
-  SubtractRest(&record.value());
-  if (const std::string clipped = ClippedText(record.value()); !clipped.empty()) {
-    found->Warn(clipped);
-  }
-  if (const Eigen::Vector3d& rest = record.value().subtracted; rest.norm() > 0.0) {
-    found->Fact("at rest", Rounded(record.value().is_vector ? rest.norm() : rest.x(), 3) +
+  found->Fact("samples", StrCat(time.size(), " at ", Rounded(rate, 5), " per second, from ",
+                                Rounded(time.front()), " s"));
+  SubtractRest(&record);
+  if (const std::string clipped = ClippedText(record); !clipped.empty()) found->Warn(clipped);
+  const bool vector = record.is_vector;
+  if (const Eigen::Vector3d& rest = record.subtracted; rest.norm() > 0.0) {
+    found->Fact("at rest", Rounded(vector ? rest.norm() : rest.x(), 3) +
                                " N before the pull, subtracted below and by pushid-push "
                                "(zero: 0, in a list of sensors, keeps them)");
   }
-  for (int axis = 0; axis < (record.value().is_vector ? 3 : 1); ++axis) {
+  for (int axis = 0; axis < (vector ? 3 : 1); ++axis) {
     std::vector<double> values;
-    for (const Eigen::Vector3d& force : record.value().force) values.push_back(force[axis]);
-    AddForce(record.value().is_vector ? std::string("f") + "xyz"[axis] : "force", rate,
-             std::move(values), found);
+    for (const Eigen::Vector3d& force : record.force) values.push_back(force[axis]);
+    AddForce(vector ? StrCat("f", "xyz"[axis]) : "force", rate, std::move(values), found);
   }
-  return std::nullopt;
 }
 
 // A table: points where columns come in threes, and forces by their names.
-MaybeError LookAtTable(const MotionFormatRow& format, const ColumnMapping& mapping,
-                       Inspection* found) {
-  const Result<NumericTable> read = ReadNumericTable(found->path, *format.table, {});
-  if (!read.ok()) return read.error();
-  const NumericTable& table = read.value();
+void LookAtTable(const MotionFormatRow& format, const ColumnMapping& mapping, Inspection* found) {
+  const NumericTable table = OrThrow(ReadNumericTable(found->path, *format.table));
   found->Fact("columns", ListOfNames(table.names));
   const int time = FindTimeColumn(table.names, mapping.time_column);
   double rate = mapping.frame_rate;
@@ -441,33 +408,31 @@ MaybeError LookAtTable(const MotionFormatRow& format, const ColumnMapping& mappi
                 "forces, moments or centres of pressure, which \"force_plates\" of "
                 "a manifest reads");
   }
-  if (!points.names.empty()) {
-    LookAtPoints(points, mapping, found);
-  } else {
-    found->Fact("rows", std::to_string(table.num_rows()) +
-                            (rate > 0.0 ? " at " + Rounded(rate, 5) + " per second" : ""));
-    if (!motion.ok() && found->forces.empty()) found->Warn(motion.error().message);
-  }
-  return std::nullopt;
+  if (!points.names.empty()) return LookAtPoints(points, mapping, found);
+  found->Fact("rows", StrCat(table.num_rows(),
+                             rate > 0.0 ? " at " + Rounded(rate, 5) + " per second" : ""));
+  if (!motion.ok() && found->forces.empty()) found->Warn(motion.error().message);
 }
 
 // The first line that says something; empty when there is none.
 std::string FirstLine(const std::string& path) {
-  LineReader reader;
-  std::string_view line;
-  if (reader.Open(path) || !reader.NextNonBlank(&line)) return "";
-  return std::string(Trimmed(line));
+  const auto first = Caught([&] {
+    LineReader reader(path);
+    std::string_view line;
+    return std::string(reader.NextNonBlank(&line) ? Trimmed(line) : "");
+  });
+  return first.ok() ? first.value() : "";
 }
 
-MaybeError Look(const ColumnMapping& mapping, Inspection* found) {
+void Look(const ColumnMapping& mapping, Inspection* found) {
   const std::string& path = found->path;
   const std::optional<MotionFormat> format = MotionFormatInFile(path);
   if (!format) {
     const std::string first = FirstLine(path);
     if (!EndsWith(path, ".json") && (first.empty() || first[0] != '{')) {
-      return Error{"unknown kind of file: names must end in " + MotionFileEndings() +
-                       ", or .json for a manifest",
-                   path};
+      throw Error{"unknown kind of file: names must end in " + MotionFileEndings() +
+                      ", or .json for a manifest",
+                  path};
     }
     found->format = "manifest";
     return InspectManifest(found);
@@ -475,40 +440,38 @@ MaybeError Look(const ColumnMapping& mapping, Inspection* found) {
   found->format = Title(*format);
   if (HasSkeleton(*format)) return LookAtBvh(mapping, found);
   if (*format == MotionFormat::kC3d) return LookAtC3d(mapping, found);
-  if (HoldsCrowd(*format)) return LookAtCrowd(*format, found);
+  if (HoldsCrowd(*format)) return InspectCrowd(OrThrow(ReadPointMotion(path, *format)), found);
   if (!RowOf(*format).table) {
-    const Result<PointMotion> motion = ReadPointMotion(path, *format);
-    if (!motion.ok()) return motion.error();
-    LookAtPoints(motion.value(), mapping, found);
-    return std::nullopt;
+    return LookAtPoints(OrThrow(ReadPointMotion(path, *format)), mapping, found);
   }
   const std::string first = *format == MotionFormat::kCsv ? FirstLine(path) : "";
   std::vector<std::string> names;
   for (std::string_view cell : CellsOf(first, SeparatorOf(first))) names.emplace_back(cell);
   if (IsPush(names)) return LookAtPush(found);
   if (IsSensor(names)) return LookAtSensor(found);
-  return LookAtTable(RowOf(*format), mapping, found);
+  LookAtTable(RowOf(*format), mapping, found);
 }
 
 }  // namespace
 
 Result<Inspection> Inspect(const std::string& path, const ColumnMapping& mapping) {
-  Inspection found;
-  found.path = path;
-  const std::vector<std::string> paths = ManifestPaths(path);
-  for (const std::string& each : paths) {
-    InputFile file;  // errors of opening come first
-    if (MaybeError failed = file.Open(each)) return *std::move(failed);
-    if (paths.size() == 1 || EndsWith(each, ".json")) continue;
-    return Error{"commas join manifests (.json) only; separate other files by spaces", each};
-  }
-  if (paths.size() > 1) {
-    found.format = "manifests";
-    if (MaybeError failed = InspectManifest(&found)) return *std::move(failed);
+  return Caught([&] {
+    Inspection found;
+    found.path = path;
+    const std::vector<std::string> paths = ManifestPaths(path);
+    for (const std::string& each : paths) {
+      InputFile file(each);  // errors of opening come first
+      if (paths.size() == 1 || EndsWith(each, ".json")) continue;
+      throw Error{"commas join manifests (.json) only; separate other files by spaces", each};
+    }
+    if (paths.size() > 1) {
+      found.format = "manifests";
+      InspectManifest(&found);
+    } else {
+      Look(mapping, &found);
+    }
     return found;
-  }
-  if (MaybeError failed = Look(mapping, &found)) return *std::move(failed);
-  return found;
+  });
 }
 
 std::vector<std::string> MassTexts(const std::vector<PendulumRecording>& recordings) {
@@ -557,26 +520,8 @@ Json InspectionJson(const Inspection& inspection) {
     json["facts"].push_back({{"what", what}, {"text", text}});
   }
   json["warnings"] = inspection.warnings;
-  json["ground"] = Json::array();
-  for (const InspectedGround& g : inspection.grounds) {
-    json["ground"].push_back({{"recording", g.recording},
-                              {"kind", g.kind},
-                              {"rate_hz", g.rate_hz},
-                              {"farthest_m", g.farthest_m},
-                              {"peak_acceleration_m_s2", g.peak_acceleration},
-                              {"peak_tilt_rad", g.peak_tilt_rad}});
-  }
-  json["plates"] = Json::array();
-  for (const InspectedPlates& p : inspection.plates) {
-    json["plates"].push_back({{"recording", p.recording},
-                              {"person", p.person},
-                              {"use", p.use},
-                              {"platforms", p.platforms},
-                              {"rate_hz", p.rate_hz},
-                              {"weight_ratio", p.weight_ratio},
-                              {"centre_least_m", Two(p.least)},
-                              {"centre_most_m", Two(p.most)}});
-  }
+  json["ground"] = inspection.ground;
+  json["plates"] = inspection.plates;
   return json;
 }
 

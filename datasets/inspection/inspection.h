@@ -1,11 +1,11 @@
-// datasets: what a file holds, and what about it will matter in a fit.
+// datasets: the contents of a file, and what about them will matter in a fit.
 //
 //   Result<Inspection> found = Inspect("trial.c3d");
 //   for (const auto& [what, text] : found.value().facts) ...
 #pragma once
 
 #include <Eigen/Core>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,30 +25,16 @@ struct InspectedSignal {
   std::vector<double> values;
 };
 
-// Ground and platforms of a manifest's recording.
-struct InspectedGround {
-  std::string recording, kind;  // "displacement", "velocity", "acceleration" or "markers"
-  double rate_hz = 0.0;         // of its file
-  double farthest_m = 0.0, peak_acceleration = 0.0;  // m/s^2; horizontal, at the frames
-  double peak_tilt_rad = 0.0;
-};
-struct InspectedPlates {
-  std::string recording, person, use;  // "measure" or "none"
-  int platforms = 0;
-  double rate_hz = 0.0;                             // of their file
-  double weight_ratio = 0.0;                        // mean vertical force over m g
-  Eigen::Vector2d least = Eigen::Vector2d::Zero();  // of the centre of pressure, m
-  Eigen::Vector2d most = Eigen::Vector2d::Zero();
-};
-
 struct Inspection {
   std::string path;
   std::string format;  // "BVH", "C3D", "TRC", "STO", "CSV", "manifest", ...
   std::vector<std::pair<std::string, std::string>> facts;  // "frames", "580 at 100 per second"
   std::vector<std::string> warnings;
 
-  std::vector<InspectedGround> grounds;  // of a manifest's recordings
-  std::vector<InspectedPlates> plates;
+  // Ground and platforms of a manifest's recordings, an object each: of the ground kind, rate of
+  // its file, and at the frames the farthest place, the peak acceleration and tilt; of platforms
+  // use, number and rate, mean vertical force over m g, and the range of the centre of pressure.
+  nlohmann::ordered_json ground = nlohmann::ordered_json::array(), plates = ground;
 
   // Data of the picture; empty where the file has no such thing.
   double rate_hz = 0.0;                  // of hip and seen

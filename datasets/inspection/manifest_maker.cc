@@ -49,84 +49,30 @@ std::string IdOf(const NamePattern& pattern, const NameValues& values) {
   return id.empty() ? "recording" : id;
 }
 
-// Files of one recording differ in their person, and besides in the subject alone.
-// people: whether the pattern names persons; otherwise a recording is one file.
-MaybeError CheckTogether(const std::string& id, const std::vector<FoundFile>& files, bool people,
-                         const std::string& folder) {
-  const auto rest = [](NameValues values) {
-    values.erase("person");
-    values.erase("subject");
-    return values;
-  };
-  for (std::size_t i = 1; i < files.size(); ++i) {
-    const FoundFile &a = files[i - 1], &b = files[i];
-    const bool same = !people || a.values.at("person") == b.values.at("person");
-    if (!same && rest(a.values) == rest(b.values)) continue;
-    return Error{a.path + " and " + b.path + " are both " +
-                     (people && same ? "person " + Quoted(a.values.at("person")) + " of " : "") +
-                     "recording " + Quoted(id) +
-                     (rest(a.values) == rest(b.values)
-                          ? "; replace the * that differs by a name in the pattern"
-                          : "; give one of them another name"),
-                 folder};
-  }
-  return std::nullopt;
-}
-
 class Maker {
  public:
-  explicit Maker(const ManifestOptions& options) : options_(options) {}
+  explicit Maker(const ManifestOptions& options) : options_(options), folder_(options.folder) {}
 
-  Result<MadeManifest> Make() {
-    const Result<NamePattern> pattern = NamePattern::Parse(options_.pattern);
-    if (!pattern.ok()) return pattern.error();
-    pattern_ = pattern.value();
-    const std::optional<MotionFormat> format = MotionFormatOfFile(options_.pattern);
-    if (!format) {
-      return Error{"the pattern " + Quoted(options_.pattern) +
-                   " must end like its files: " + MotionFileEndings()};
-    }
-    format_ = *format;
-    if (HoldsCrowd(format_) && options_.mapping.empty()) {
-      return Error{"the pattern " + Quoted(options_.pattern) + " names trajectories; " +
-                   kCrowdIsNoRecording};
-    }
-    if (!options_.up.empty() || !options_.forward.empty()) {
-      const Result<Eigen::Matrix3d> axes =
-          AxesRotation(options_.up.empty() ? "z" : options_.up,
-                       options_.forward.empty() ? "x" : options_.forward);
-      if (!axes.ok()) return axes.error();
-    }
-    if (!options_.push_pattern.empty()) {
-      const Result<NamePattern> push = NamePattern::Parse(options_.push_pattern);
-      if (!push.ok()) return push.error();
-      push_pattern_ = push.value();
-      if (MaybeError wrong = CheckPushPattern()) return *std::move(wrong);
-    }
-    if (!options_.mapping.empty()) {
-      Result<ColumnMapping> mapping = ReadColumnMapping(options_.mapping);
-      if (!mapping.ok()) return mapping.error();
-      mapping_ = std::move(mapping.value());
-    }
+  // Throws an Error.
+  MadeManifest Make() {
+    ReadOptions();
     WarnOfNames();
-    if (MaybeError failed = Find()) return *std::move(failed);
+    Find();
     const std::string path = recordings_.begin()->second.front().path;
-    if (format_ == MotionFormat::kCsv && IsCrowdCsv((fs::path(options_.folder) / path).string())) {
-      return Error{path + ": " + kCrowdIsNoRecording};
+    if (format_ == MotionFormat::kCsv && IsCrowdCsv((folder_ / path).string())) {
+      throw Error{path + ": " + kCrowdIsNoRecording};
     }
-    for (auto& [id, files] : recordings_) {
-      if (MaybeError failed = AddRecording(id, &files)) return *std::move(failed);
-    }
+    for (auto& [id, files] : recordings_) AddRecording(id, &files);
     if (made_.manifest.recordings.empty()) {
       Error first = made_.unreadable.front();
       first.message += "; no other file can be read either";
-      return first;
+      throw first;
     }
     const std::string unused = UnusedMasses();
     if (!massless_.empty()) {
-      return Error{"no mass is given for " + ListOfNames({massless_.begin(), massless_.end()}) +
-                   "; list them in a file with the columns id,mass_kg (--masses)" +
-                   (unused.empty() ? "" : "; " + unused)};
+      throw Error{"no mass is given for " + ListOfNames({massless_.begin(), massless_.end()}) +
+                  "; list them in a file with the columns id,mass_kg (--masses)" +
+                  (unused.empty() ? "" : "; " + unused)};
     }
     if (!unused.empty()) made_.warnings.push_back(unused);
     CheckFirst();
@@ -134,18 +80,59 @@ class Maker {
   }
 
  private:
-  // The push pattern must name one file for each recording.
-  MaybeError CheckPushPattern() const {
+  void ReadOptions() {
+    pattern_ = OrThrow(NamePattern::Parse(options_.pattern));
+    const std::optional<MotionFormat> format = MotionFormatOfFile(options_.pattern);
+    if (!format) {
+      throw Error{"the pattern " + Quoted(options_.pattern) +
+                  " must end like its files: " + MotionFileEndings()};
+    }
+    format_ = *format;
+    if (HoldsCrowd(format_) && options_.mapping.empty()) {
+      throw Error{"the pattern " + Quoted(options_.pattern) + " names trajectories; " +
+                  kCrowdIsNoRecording};
+    }
+    AxesGiven(options_.up, options_.forward);
+    if (!options_.mapping.empty()) mapping_ = OrThrow(ReadColumnMapping(options_.mapping));
+    if (options_.push_pattern.empty()) return;
+    // The push pattern must name one file for each recording.
+    push_pattern_ = OrThrow(NamePattern::Parse(options_.push_pattern));
     const std::string what = "the push pattern " + Quoted(options_.push_pattern);
     if (push_pattern_->HasStar()) {
-      return Error{what + " has a *; it names one file of each recording, by names of the pattern"};
+      throw Error{what + " has a *; it names one file of each recording, by names of the pattern"};
     }
     for (const std::string& name : push_pattern_->names()) {
       if (pattern_.Has(name)) continue;
-      return Error{what + " has the name {" + name + "}, but the pattern has only " +
-                   ListOfNames(pattern_.names())};
+      throw Error{what + " has the name {" + name + "}, but the pattern has only " +
+                  ListOfNames(pattern_.names())};
     }
-    return std::nullopt;
+  }
+
+  // Files of one recording differ in their person, and besides in the subject alone; where the
+  // pattern names no persons, a recording is one file.
+  void CheckTogether(const std::string& id, const std::vector<FoundFile>& files) const {
+    const bool people = pattern_.Has("person");
+    const auto rest = [](NameValues values) {
+      values.erase("person");
+      values.erase("subject");
+      return values;
+    };
+    for (std::size_t i = 1; i < files.size(); ++i) {
+      const FoundFile &a = files[i - 1], &b = files[i];
+      const bool same = !people || a.values.at("person") == b.values.at("person");
+      const bool alike = rest(a.values) == rest(b.values);
+      if (!same && alike) continue;
+      throw Error{a.path + " and " + b.path + " are both " +
+                      (people && same ? "person " + Quoted(a.values.at("person")) + " of " : "") +
+                      "recording " + Quoted(id) +
+                      (alike ? "; replace the * that differs by a name in the pattern"
+                             : "; give one of them another name"),
+                  options_.folder};
+    }
+    if (id.find(',') == std::string::npos) return;
+    throw Error{files[0].path + " would be recording " + Quoted(id) +
+                    ", but commas separate ids in lists; give the file another name",
+                options_.folder};
   }
 
   // A misspelt {subject} would make one person of everybody.
@@ -159,37 +146,27 @@ class Maker {
     }
   }
 
-  MaybeError Find() {
-    const Result<std::vector<std::string>> files = FilesBelow(options_.folder);
-    if (!files.ok()) return files.error();
-    for (const std::string& path : files.value()) {
+  void Find() {
+    const std::vector<std::string> files = OrThrow(FilesBelow(options_.folder));
+    for (const std::string& path : files) {
       const std::optional<NameValues> values = pattern_.Match(path);
-      if (!values) {
-        ++made_.others;
-        continue;
-      }
-      ++made_.files;
-      recordings_[IdOf(pattern_, *values)].push_back({path, *values});
+      ++(values ? made_.files : made_.others);
+      if (values) recordings_[IdOf(pattern_, *values)].push_back({path, *values});
     }
-    if (made_.files == 0) {
-      if (files.value().empty()) return Error{"there is no file in it", options_.folder};
-      return Error{"none of its " + std::to_string(files.value().size()) +
-                       " files fits the pattern " + Quoted(options_.pattern) + "; the first is " +
-                       files.value()[0],
-                   options_.folder};
-    }
-    return std::nullopt;
+    if (made_.files > 0) return;
+    throw Error{files.empty() ? "there is no file in it"
+                              : StrCat("none of its ", files.size(), " files fits the pattern ",
+                                       Quoted(options_.pattern), "; the first is ", files[0]),
+                options_.folder};
   }
 
-  std::string Value(const NameValues& values, const char* name, const std::string& fallback) const {
+  static std::string Value(const NameValues& values, const char* name,
+                           const std::string& fallback) {
     const auto found = values.find(name);
     return found == values.end() ? fallback : found->second;
   }
 
   // The path of a file as the manifest names it.
-  std::string FromManifest(const std::string& relative) const {
-    return BesideManifest(fs::path(options_.folder) / relative);
-  }
   std::string BesideManifest(const fs::path& file) const {
     std::error_code failed;
     const fs::path base = fs::absolute(options_.manifest_path).parent_path();
@@ -197,29 +174,20 @@ class Maker {
     return (failed ? file : path).generic_string();
   }
 
-  MaybeError AddRecording(const std::string& id, std::vector<FoundFile>* files) {
+  void AddRecording(const std::string& id, std::vector<FoundFile>* files) {
     if (pattern_.Has("person")) std::sort(files->begin(), files->end(), &PersonBefore);
-    if (MaybeError mixed = CheckTogether(id, *files, pattern_.Has("person"), options_.folder))
-      return mixed;
-    if (id.find(',') != std::string::npos) {
-      return Error{(*files)[0].path + " would be recording " + Quoted(id) +
-                       ", but commas separate ids in lists; give the file another name",
-                   options_.folder};
-    }
+    CheckTogether(id, *files);
     const NameValues& values = files->front().values;
     ManifestRecording recording;
     recording.id = id;
     for (std::size_t i = files->size(); i-- > 0;) {
       const Result<double> rate = Rate((*files)[i].path);
-      if (!rate.ok()) {
-        made_.unreadable.push_back(rate.error());
-        return std::nullopt;
-      }
+      if (!rate.ok()) return made_.unreadable.push_back(rate.error());
       recording.fps = rate.value();  // in the end that of the first
     }
     if (!(recording.fps > 0.0)) {
-      return Error{"it does not give its frame rate; give --fps",
-                   (fs::path(options_.folder) / files->front().path).string()};
+      throw Error{"it does not give its frame rate; give --fps",
+                  (folder_ / files->front().path).string()};
     }
     recording.labels.Set(kSettingLabel, Value(values, kSettingLabel, options_.setting));
     recording.labels.Set(kMagnitudeLabel, Value(values, kMagnitudeLabel, options_.magnitude));
@@ -228,10 +196,9 @@ class Maker {
     recording.push_kind = options_.push_kind;
     recording.motion_format = format_;
     for (const FoundFile& file : *files) {
-      const std::string subject =
-          Value(file.values, "subject", Value(file.values, "person", "person"));
-      recording.subjects.push_back(SubjectOf(subject));
-      recording.motion.push_back(FromManifest(file.path));
+      recording.subjects.push_back(
+          SubjectOf(Value(file.values, "subject", Value(file.values, "person", "person"))));
+      recording.motion.push_back(BesideManifest(folder_ / file.path));
     }
     SetPush(values, &recording);
     recording.mapping = options_.mapping.empty() ? "" : BesideManifest(options_.mapping);
@@ -239,7 +206,6 @@ class Maker {
     recording.length_unit = options_.length_unit;
     recording.length_scale = options_.length_scale;
     made_.manifest.recordings.push_back(recording);
-    return std::nullopt;
   }
 
   // Written even where they are the default, so that a mapping's do not win.
@@ -271,29 +237,23 @@ class Maker {
   // Frames per second, whole where they nearly are; 0 where neither file nor option says.
   Result<double> Rate(const std::string& relative) const {
     if (options_.fps > 0.0) return options_.fps;
-    const std::string path = (fs::path(options_.folder) / relative).string();
     if (mapping_.frame_rate > 0.0 && !HasSkeleton(format_)) return mapping_.frame_rate;
     PointReadOptions point_options;
     point_options.time_column = mapping_.time_column;
     point_options.columns = mapping_.columns;
-    return ReadFrameRate(path, format_, point_options);
+    return ReadFrameRate((folder_ / relative).string(), format_, point_options);
   }
 
+  // A sensor's own record, for one, is no push yet.
   void SetPush(const NameValues& values, ManifestRecording* recording) {
     if (!push_pattern_) return;
     const std::optional<std::string> path = push_pattern_->Fill(values);
     std::error_code ignored;
-    if (path && fs::is_regular_file(fs::path(options_.folder) / *path, ignored)) {
-      recording->push_csv = FromManifest(*path);
-      CheckPush((fs::path(options_.folder) / *path).string());
-    } else {
-      made_.without_push.push_back(recording->id);
+    if (!path || !fs::is_regular_file(folder_ / *path, ignored)) {
+      return made_.without_push.push_back(recording->id);
     }
-  }
-
-  // A sensor's own record, for one, is no push yet.
-  void CheckPush(const std::string& file) {
-    const auto push = ReadPushCsv(file);
+    recording->push_csv = BesideManifest(folder_ / *path);
+    const auto push = ReadPushCsv((folder_ / *path).string());
     if (push.ok()) return;
     made_.warnings.push_back(push.error().ToString() +
                              "; if it is a sensor's record, convert it by pushid-push --sensor");
@@ -314,6 +274,7 @@ class Maker {
   }
 
   const ManifestOptions& options_;
+  const fs::path folder_;
   NamePattern pattern_;
   std::optional<NamePattern> push_pattern_;
   ColumnMapping mapping_;
@@ -325,61 +286,63 @@ class Maker {
 
 }  // namespace
 
-Result<MadeManifest> MakeManifest(const ManifestOptions& options) { return Maker(options).Make(); }
+Result<MadeManifest> MakeManifest(const ManifestOptions& options) {
+  return Caught([&] { return Maker(options).Make(); });
+}
 
 Result<std::map<std::string, ManifestSubject>> ReadPeople(const std::string& path) {
-  LineReader reader;
-  if (MaybeError failed = reader.Open(path)) return *std::move(failed);
-  std::map<std::string, ManifestSubject> people;
-  std::string_view line;
-  if (!reader.NextNonBlank(&line)) {
-    return reader.error() ? *reader.error() : Error{"the file lists no masses", path};
-  }
-  std::vector<std::string> columns;
-  const char separator = SeparatorOf(line);
-  for (const std::string_view cell : CellsOf(line, separator)) columns.emplace_back(cell);
-  if (columns.size() < 2 || !EqualsIgnoringCase(columns[0], "id") ||
-      !EqualsIgnoringCase(columns[1], "mass_kg")) {
-    return reader.ErrorHere(
-        "the first line must be id,mass_kg, perhaps with further columns of what is known of "
-        "people (group, height, ...), not " +
-        Quoted(line));
-  }
-  while (reader.NextNonBlank(&line)) {
-    std::vector<std::string_view> cells = CellsOf(line, separator);
-    if (cells.size() > columns.size()) {
-      return reader.ErrorHere("the row has " + std::to_string(cells.size()) + " values for " +
-                              std::to_string(columns.size()) + " columns");
+  return Caught([&] {
+    LineReader reader(path);
+    std::map<std::string, ManifestSubject> people;
+    std::string_view line;
+    if (!reader.NextNonBlank(&line)) throw Error{"the file lists no masses", path};
+    std::vector<std::string> columns;
+    const char separator = SeparatorOf(line);
+    for (const std::string_view cell : CellsOf(line, separator)) columns.emplace_back(cell);
+    if (columns.size() < 2 || !EqualsIgnoringCase(columns[0], "id") ||
+        !EqualsIgnoringCase(columns[1], "mass_kg")) {
+      throw reader.ErrorHere(
+          "the first line must be id,mass_kg, perhaps with further columns of what is known of "
+          "people (group, height, ...), not " +
+          Quoted(line));
     }
-    const bool cut = cells.size() < 2;
-    cells.resize(columns.size());
-    const std::string id(cells[0]);
-    double value = 0.0;
-    const bool unknown = !cut && (cells[1].empty() || EqualsIgnoringCase(cells[1], "n/a"));
-    if (!unknown && !ParseDouble(cells[1], &value)) {
-      return reader.ErrorHere("mass_kg: " + NumberProblem(cells[1]));
-    }
-    if (!unknown && !(value > 0.0 && value <= kHeaviestPerson)) {
-      return reader.ErrorHere("a mass in kg is above 0 and at most " + Rounded(kHeaviestPerson) +
-                              ", not " + Rounded(value));
-    }
-    ManifestSubject person{id, value};
-    for (std::size_t i = 2; i < cells.size(); ++i) {
-      double number = 0.0;
-      if (cells[i].empty() || EqualsIgnoringCase(cells[i], "n/a")) continue;  // not known
-      if (ParseDouble(cells[i], &number)) {
-        person.known.numbers[columns[i]] = number;
-      } else {
-        person.known.texts[columns[i]] = std::string(cells[i]);
+    const auto unknown = [](std::string_view cell) {
+      return cell.empty() || EqualsIgnoringCase(cell, "n/a");
+    };
+    while (reader.NextNonBlank(&line)) {
+      std::vector<std::string_view> cells = CellsOf(line, separator);
+      if (cells.size() > columns.size()) {
+        throw reader.ErrorHere(
+            StrCat("the row has ", cells.size(), " values for ", columns.size(), " columns"));
+      }
+      const bool cut = cells.size() < 2;
+      cells.resize(columns.size());
+      ManifestSubject person{std::string(cells[0])};
+      if (cut || !unknown(cells[1])) {
+        if (!ParseDouble(cells[1], &person.mass_kg)) {
+          throw reader.ErrorHere("mass_kg: " + NumberProblem(cells[1]));
+        }
+        if (!(person.mass_kg > 0.0 && person.mass_kg <= kHeaviestPerson)) {
+          throw reader.ErrorHere("a mass in kg is above 0 and at most " + Rounded(kHeaviestPerson) +
+                                 ", not " + Rounded(person.mass_kg));
+        }
+      }
+      for (std::size_t i = 2; i < cells.size(); ++i) {
+        double number = 0.0;
+        if (unknown(cells[i])) continue;
+        if (ParseDouble(cells[i], &number)) {
+          person.known.numbers[columns[i]] = number;
+        } else {
+          person.known.texts[columns[i]] = std::string(cells[i]);
+        }
+      }
+      if (!people.emplace(person.id, person).second) {
+        throw reader.ErrorHere("the mass of " + Quoted(person.id) + " was given before");
       }
     }
-    if (!people.emplace(id, person).second) {
-      return reader.ErrorHere("the mass of " + Quoted(id) + " was given before");
-    }
-  }
-  if (reader.error()) return *reader.error();
-  if (people.empty()) return reader.ErrorHere("the file lists no masses");
-  return people;
+    if (people.empty()) throw reader.ErrorHere("the file lists no masses");
+    return people;
+  });
 }
 
 }  // namespace pushid

@@ -46,8 +46,8 @@ struct MadeManifest {
   int files = 0;                          // that fitted the pattern
   int others = 0;                         // that did not
   std::vector<std::string> without_push;  // recordings for which push_pattern named no file
-  std::vector<std::string> warnings;      // what looks wrong about the pattern, or the axes
-  std::vector<Error> unreadable;          // what is wrong with the files of recordings left out
+  std::vector<std::string> warnings;      // doubts about the pattern, or the axes
+  std::vector<Error> unreadable;          // of the files of recordings left out
 };
 
 // Errors: no folder, a pattern that is none or fits no file, an ending of no known format, a push

@@ -65,17 +65,19 @@ double SpeedAt(const Track& track, int frame, double fps) {
 
 class StepFinder {
  public:
-  StepFinder(const FootTracks& tracks, double fps) : fps_(fps) {
-    points_.reserve(3);
-    for (const Track* track : {&tracks.ankle, &tracks.toe, &tracks.heel}) {
-      Track whole = WithoutGaps(*track, tracks.weight);
+  StepFinder(const RecordedPerson& person, Foot foot, double fps) : fps_(fps), foot_(foot) {
+    const bool left = foot == Foot::kLeft;
+    for (const Track* track : {left ? &person.left_ankle : &person.right_ankle,
+                               left ? &person.left_toe : &person.right_toe,
+                               left ? &person.left_heel : &person.right_heel}) {
+      Track whole = WithoutGaps(*track, person.weight);
       if (!whole.empty()) points_.push_back(std::move(whole));
     }
     thresholds_ = points_.size() > 1 ? kToeOrHeelToo : kAnkleAlone;
     frames_ = points_.empty() ? 0 : static_cast<int>(points_[0].size());
   }
 
-  std::vector<FootStep> Find(Foot foot) const {
+  std::vector<FootStep> Find() const {
     std::vector<Span> spans;
     for (const Span& span : Joined(Moving())) {
       if (IsStep(span)) spans.push_back(span);
@@ -84,7 +86,7 @@ class StepFinder {
     for (std::size_t i = 0; i < spans.size(); ++i) {
       const int before = i > 0 ? spans[i - 1].end : 0;
       const int after = i + 1 < spans.size() ? spans[i + 1].begin : frames_;
-      FootStep step{foot, spans[i].begin, spans[i].end, spans[i].end < frames_};
+      FootStep step{foot_, spans[i].begin, spans[i].end, spans[i].end < frames_};
       step.travel = Place({step.landing, after}, frames_ - 1) - Place({before, step.lift_off}, 0);
       steps.push_back(step);
     }
@@ -169,17 +171,11 @@ class StepFinder {
   }
 
   const double fps_;
+  const Foot foot_;
   StepThresholds thresholds_ = kAnkleAlone;
   std::vector<Track> points_;  // the ankle first
   int frames_ = 0;
 };
-
-std::string StepText(const FootStep& step, double fps) {
-  const std::string from = Rounded(step.lift_off / fps, 3);
-  return NameOf(step.foot) +
-         (step.finished ? " " + from + "-" + Rounded(step.landing / fps, 3) : " from " + from) +
-         " s " + TravelText(step.travel) + (step.finished ? "" : ", cut off");
-}
 
 }  // namespace
 
@@ -194,7 +190,10 @@ std::string StepsText(const PersonSteps& steps, double fps) {
   if (!steps.Stepped()) return "none";
   std::string text;
   for (const FootStep& step : steps.steps) {
-    text += (text.empty() ? "" : "; ") + StepText(step, fps);
+    const std::string from = Rounded(step.lift_off / fps, 3);
+    text += (text.empty() ? "" : "; ") + NameOf(step.foot) +
+            (step.finished ? " " + from + "-" + Rounded(step.landing / fps, 3) : " from " + from) +
+            " s " + TravelText(step.travel) + (step.finished ? "" : ", cut off");
   }
   return text;
 }
@@ -207,21 +206,12 @@ bool PersonSteps::Stands(Foot foot, int frame) const {
   });
 }
 
-std::vector<FootStep> FindSteps(Foot foot, const FootTracks& tracks, double fps) {
-  return StepFinder(tracks, fps).Find(foot);
-}
-
-double Travel(const FootTracks& tracks, double fps) { return StepFinder(tracks, fps).Travel(); }
-
 PersonSteps FindSteps(const RecordedPerson& person, double fps) {
   PersonSteps found;
   for (Foot foot : kFeet) {
-    const bool left = foot == Foot::kLeft;
-    const FootTracks tracks{left ? person.left_ankle : person.right_ankle,
-                            left ? person.left_toe : person.right_toe,
-                            left ? person.left_heel : person.right_heel, person.weight};
-    const std::vector<FootStep> steps = FindSteps(foot, tracks, fps);
-    found.travel = std::max(found.travel, Travel(tracks, fps));
+    const StepFinder finder(person, foot, fps);
+    const std::vector<FootStep> steps = finder.Find();
+    found.travel = std::max(found.travel, finder.Travel());
     found.steps.insert(found.steps.end(), steps.begin(), steps.end());
   }
   std::stable_sort(found.steps.begin(), found.steps.end(),

@@ -1,4 +1,4 @@
-// datasets: which foot leaves the ground, when, and how far off it lands.
+// datasets: steps of the feet: when they leave the ground, and how far off they land.
 //
 // A foot that rolls over its toe, turns on its heel or lifts its heel has a point that rests. So a
 // foot moves as fast as the slowest of its recorded points (ankle; toe and heel where there are
@@ -53,15 +53,6 @@ inline constexpr StepThresholds kToeOrHeelToo{0.15, 0.3};
 // An ankle alone swings over a toe that rests: what it does below these speeds is a heel lift.
 inline constexpr StepThresholds kAnkleAlone{0.5, 0.7};
 
-// One foot's points, one position per frame, m; toe and heel may be empty.
-struct FootTracks {
-  std::vector<Eigen::Vector3d> ankle, toe, heel;
-  // Weights of frames; empty: every frame was seen. Frames with weight 0 were not, nor were
-  // positions that are not finite: a straight line replaces them, and a foot that is elsewhere
-  // after a short gap has stepped in it.
-  std::vector<double> weight;
-};
-
 // m; more than noise of 8 mm, a camera that drifts by 3 cm and feet that are put down again do
 // (tests/datasets/loading/foot_steps_test.cc).
 inline constexpr double kTravelOfWhoMoves = 0.05;
@@ -80,8 +71,9 @@ struct PersonSteps {
   bool Stands(Foot foot, int frame) const;
 };
 
-double Travel(const FootTracks& tracks, double fps);  // as PersonSteps::travel
-std::vector<FootStep> FindSteps(Foot foot, const FootTracks& tracks, double fps);
+// Frames with weight 0 were not seen, nor were positions that are not finite: a straight line
+// replaces them, and a foot that is elsewhere after a short gap has stepped in it. Toes and heels
+// may be empty.
 PersonSteps FindSteps(const RecordedPerson& person, double fps);
 
 // "0.31 m forwards"; also backwards, to the left, to the right: the nearest of them.

@@ -23,16 +23,16 @@ namespace fs = std::filesystem;
 constexpr char kSkeletonFile[] = "skeleton.json", kTestFolder[] = "test",
                kTestSubjectFolder[] = "S5";
 
-Result<std::string> FindSkeleton(const std::string& folder) {
+std::string FindSkeleton(const std::string& folder) {
   const fs::path place = fs::path(folder).lexically_normal();
   std::error_code ignored;
   const fs::path here = place / kSkeletonFile, above = place / ".." / kSkeletonFile;
   if (fs::exists(here, ignored)) return here.string();
-  if (fs::exists(place / kTestSubjectFolder, ignored)) return std::string();  // Human3.6M's
+  if (fs::exists(place / kTestSubjectFolder, ignored)) return "";  // Human3.6M's
   if (fs::exists(above, ignored)) return above.string();
-  return Error{std::string("there is no ") + kSkeletonFile +
-                   " here or one folder higher; give a folder of clips by --folder",
-               folder};
+  throw Error{StrCat("there is no ", kSkeletonFile,
+                     " here or one folder higher; give a folder of clips by --folder"),
+              folder};
 }
 
 constexpr int kTestSubject = 5, kValidationSubject = 11;
@@ -53,80 +53,56 @@ std::pair<std::string, int64_t> OrderOf(const MocapClip& clip) {
 
 constexpr int kTranslationNumbers = 3;  // in front of every line's maps
 
-struct ExponentialMapMotion {
-  Eigen::MatrixXd maps;  // 3 numbers a joint; a column a frame
-  std::string content_hash;
-};
-
 // Appends the numbers of a line.
-MaybeError ReadLine(const LineReader& reader, std::string_view line, int expected,
-                    std::vector<double>* numbers) {
-  const auto complain = [&](const char* at, const std::string& problem) {
-    Error error = reader.ErrorHere(problem);
-    error.column = static_cast<int>(at - line.data()) + 1;
-    return error;
-  };
-  const std::string needed = "; a line has " + std::to_string(expected) +
-                             " numbers, separated by commas (3 of translation, then 3 a joint)";
+void ReadLine(const LineReader& reader, std::string_view line, int expected,
+              std::vector<double>* numbers) {
+  const std::string needed =
+      StrCat("; a line has ", expected,
+             " numbers, separated by commas (3 of translation, then 3 a joint)");
   std::string_view rest = line;
-  for (int i = 0; i < expected; ++i) {
+  const auto fail = [&](const std::string& problem) {
+    Error error = reader.ErrorHere(problem + needed);
+    error.column = static_cast<int>(rest.data() - line.data()) + 1;
+    throw error;
+  };
+  for (int i = 1; i <= expected; ++i) {
     const size_t comma = rest.find(',');
     const std::string_view cell = Trimmed(rest.substr(0, comma));
-    double value = 0.0;
-    if (!ParseDouble(cell, &value)) {
-      return complain(rest.data(),
-                      "number " + std::to_string(i + 1) + ": " + NumberProblem(cell) + needed);
-    }
-    numbers->push_back(value);
+    double& value = numbers->emplace_back();
+    if (!ParseDouble(cell, &value)) fail(StrCat("number ", i, ": ", NumberProblem(cell)));
     const bool more = comma != std::string_view::npos;
-    if (more != (i + 1 < expected)) {
-      return complain(rest.data(),
-                      more ? "the line has more numbers than it should" + needed
-                           : "the line ends after " + std::to_string(i + 1) + " numbers" + needed);
-    }
+    if (more && i == expected) fail("the line has more numbers than it should");
+    if (!more && i < expected) fail(StrCat("the line ends after ", i, " numbers"));
     if (more) rest.remove_prefix(comma + 1);
   }
-  return std::nullopt;
 }
 
-// Motion capture as the human-motion-prediction literature shares it: a line a frame, a number of
+// A clip as the human-motion-prediction literature shares it: a line a frame, a number of
 // translation or of an exponential map after the other, separated by commas.
-Result<ExponentialMapMotion> ReadExponentialMapText(const std::string& path, int joints) {
-  LineReader reader;
-  if (MaybeError failed = reader.Open(path)) return *std::move(failed);
-  const int expected = kTranslationNumbers + 3 * joints;
-  std::vector<double> numbers;
-  std::string_view line;
-  while (reader.NextNonBlank(&line)) {
-    if (MaybeError error = ReadLine(reader, line, expected, &numbers)) return *std::move(error);
-  }
-  if (reader.error()) return *reader.error();
-  if (numbers.empty()) return reader.ErrorHere("the file has no frames");
-  const int frames = static_cast<int>(numbers.size()) / expected;
-  const Eigen::Map<const Eigen::MatrixXd> all(numbers.data(), expected, frames);
-  return ExponentialMapMotion{all.bottomRows(3 * joints), reader.HashHex()};
-}
-
-Result<MocapClip> ReadClip(const fs::path& folder, const std::string& name,
-                           const MocapSkeleton& skeleton) {
+MocapClip ReadClip(const fs::path& folder, const std::string& name, const MocapSkeleton& skeleton) {
   const fs::path path = folder / name;
-  const Result<ExponentialMapMotion> read =
-      ReadExponentialMapText(path.string(), skeleton.tree.num_joints());
-  if (!read.ok()) return read.error();
-  const Eigen::MatrixXd& maps = read.value().maps;
+  LineReader reader(path.string());
+  const int maps = 3 * skeleton.tree.num_joints(), expected = kTranslationNumbers + maps;
+  std::vector<double> numbers;
+  for (std::string_view line; reader.NextNonBlank(&line);) {
+    ReadLine(reader, line, expected, &numbers);
+  }
+  if (numbers.empty()) throw reader.ErrorHere("the file has no frames");
   MocapClip clip;
   clip.action = path.parent_path().filename().string();
   clip.name = path.stem().string();
-  clip.content_hash = read.value().content_hash;
+  clip.content_hash = reader.HashHex();
   clip.is_test = fs::path(name).begin()->string() == kTestFolder;
   clip.subject = SubjectOf(clip.action);
   if (clip.subject > 0) {
     clip.action = clip.name.substr(0, clip.name.rfind('_'));
     clip.is_test = clip.subject == kTestSubject;
   }
-  clip.motion.resize(skeleton.layout.num_coordinates(), maps.cols());
-  for (Eigen::Index t = 0; t < maps.cols(); ++t) {
-    const Eigen::Matrix3Xd joints = JointPositions(skeleton.tree, maps.col(t));
+  const int frames = static_cast<int>(numbers.size()) / expected;
+  const Eigen::Map<const Eigen::MatrixXd> all(numbers.data(), expected, frames);
+  clip.motion.resize(skeleton.layout.num_coordinates(), frames);
+  for (int t = 0; t < frames; ++t) {
+    const Eigen::Matrix3Xd joints = JointPositions(skeleton.tree, all.col(t).tail(maps));
     for (size_t i = 0; i < skeleton.used.size(); ++i) {
       clip.motion.col(t).segment<3>(3 * i) = joints.col(skeleton.used[i]).cast<float>();
     }
@@ -178,38 +154,48 @@ constexpr int kMostJoints = 1000;
 constexpr int kUpAxis = 1;  // the literature's clips have y up
 constexpr double kMetresPerMillimetre = 1e-3;
 
+// Parents and offsets as the literature's forward kinematics has them. Of 32 joints ten are hips'
+// roots, or stand where another does.
+constexpr char kHuman36mSkeleton[] = R"({
+  "joints": 32,
+  "parents": [-1, 0, 1, 2, 3, 4, 0, 6, 7, 8, 9, 0, 11, 12, 13, 14, 12, 16, 17, 18, 19, 20, 19, 22,
+    12, 24, 25, 26, 27, 28, 27, 30],
+  "offsets_mm": [[0, 0, 0], [-132.948591, 0, 0], [0, -442.894612, 0], [0, -454.206447, 0],
+    [0, 0, 162.767078], [0, 0, 74.999437], [132.948826, 0, 0], [0, -442.894413, 0],
+    [0, -454.20659, 0], [0, 0, 162.767426], [0, 0, 74.999948], [0, 0.1, 0], [0, 233.383263, 0],
+    [0, 257.077681, 0], [0, 121.134938, 0], [0, 115.002227, 0], [0, 257.077681, 0],
+    [0, 151.034226, 0], [0, 278.882773, 0], [0, 251.733451, 0], [0, 0, 0], [0, 0, 99.999627],
+    [0, 100.000188, 0], [0, 0, 0], [0, 257.077681, 0], [0, 151.031437, 0], [0, 278.892924, 0],
+    [0, 251.72868, 0], [0, 0, 0], [0, 0, 99.999888], [0, 137.499922, 0], [0, 0, 0]],
+  "used": [2, 3, 4, 5, 7, 8, 9, 10, 12, 13, 14, 15, 17, 18, 19, 21, 22, 25, 26, 27, 29, 30],
+  "duplicates": {"16": 13, "20": 19, "23": 22, "24": 13, "28": 27, "31": 30},
+  "mirror": "x -> -x; joints 1-5 <-> 6-10, 16-23 <-> 24-31"
+})";
+
 // A list of whole numbers from `lowest` to below `joints`.
 std::vector<int> Indices(const char* key, int lowest, int joints, JsonFields* fields) {
-  std::vector<int> indices;
-  if (!fields->Require(key, "a list of joints")) return indices;
-  for (const Json& value : fields->List(key)) {
-    const bool fits =
-        value.is_number_integer() && value.get<int>() >= lowest && value.get<int>() < joints;
-    if (!fits) {
-      fields->Fail(key, "holds " + Shown(value) + "; its numbers are joints, below " +
-                            std::to_string(joints));
-      return {};
-    }
-    indices.push_back(value.get<int>());
-  }
-  return indices;
+  if (!fields->Require(key, "a list of joints")) return {};
+  const Json& list = fields->List(key);
+  const auto other = std::find_if_not(list.begin(), list.end(), [&](const Json& value) {
+    return value.is_number_integer() && value.get<int>() >= lowest && value.get<int>() < joints;
+  });
+  if (other == list.end()) return list.get<std::vector<int>>();
+  fields->Fail(key, StrCat("holds ", Shown(*other), "; its numbers are joints, below ", joints));
+  return {};
 }
 
 Eigen::Matrix3Xd Offsets(int joints, JsonFields* fields) {
   Eigen::Matrix3Xd offsets = Eigen::Matrix3Xd::Zero(3, joints);
   if (!fields->Require("offsets_mm", "three numbers a joint")) return offsets;
   const Json& list = fields->List("offsets_mm");
-  const auto is_offset = [](const Json& row) {
-    return row.is_array() && row.size() == 3 &&
-           std::all_of(row.begin(), row.end(), [](const Json& x) { return x.is_number(); });
-  };
-  if (static_cast<int>(list.size()) != joints ||
-      !std::all_of(list.begin(), list.end(), is_offset)) {
-    fields->Fail("offsets_mm", "must be " + std::to_string(joints) + " lists of three numbers");
-    return offsets;
+  bool right = static_cast<int>(list.size()) == joints;
+  for (int i = 0; right && i < joints; ++i) {
+    const auto xyz = ListOf<double>(list[i]);
+    right = xyz && xyz->size() == 3;
+    if (right) offsets.col(i) = kMetresPerMillimetre * Eigen::Vector3d(xyz->data());
   }
-  for (int i = 0; i < joints; ++i) {
-    for (int k = 0; k < 3; ++k) offsets(k, i) = kMetresPerMillimetre * list[i][k].get<double>();
+  if (!right) {
+    fields->Fail("offsets_mm", StrCat("must be ", joints, " lists of three numbers"));
   }
   return offsets;
 }
@@ -218,7 +204,7 @@ Eigen::Matrix3Xd Offsets(int joints, JsonFields* fields) {
 std::vector<int> MirroredJoints(const std::string& text, int joints, int* axis,
                                 JsonFields* fields) {
   std::vector<int> mirrored(joints);
-  for (int i = 0; i < joints; ++i) mirrored[i] = i;
+  std::iota(mirrored.begin(), mirrored.end(), 0);
   std::smatch match;
   static const std::regex kAxis("([xyz]) -> -\\1"), kPair("(\\d+)-(\\d+) <-> (\\d+)-(\\d+)");
   if (!std::regex_search(text, match, kAxis)) {
@@ -277,7 +263,7 @@ void SetLayout(const std::vector<int>& mirrored, const std::vector<int>& same, J
   }
   for (int i = 0; i < count; ++i) {
     const int joint = skeleton->used[i], parent = skeleton->tree.parents[joint];
-    layout.names.push_back("joint" + std::to_string(joint));
+    layout.names.push_back(StrCat("joint", joint));
     layout.mirrored.push_back(particle[mirrored[joint]]);
     if (layout.mirrored.back() < 0) {
       return fields->Fail("mirror", "turns used joints into others that are not used");
@@ -296,30 +282,24 @@ constexpr int kFirstStart = 16, kPrefix = 50, kSuffix = 100;  // frames
 }  // namespace
 
 Result<MocapFolder> ReadMocapFolder(const std::string& folder) {
-  const Result<std::string> skeleton_file = FindSkeleton(folder);
-  if (!skeleton_file.ok()) return skeleton_file.error();
-  Result<MocapSkeleton> skeleton = ReadMocapSkeleton(skeleton_file.value());
-  if (!skeleton.ok()) return skeleton.error();
-  MocapFolder mocap;
-  mocap.skeleton = std::move(skeleton.value());
-  const Result<std::vector<std::string>> files = FilesBelow(folder);
-  if (!files.ok()) return files.error();
-  for (const std::string& name : files.value()) {
-    const fs::path path(name);
-    if (path.extension() != ".txt" || !path.has_parent_path()) continue;
-    Result<MocapClip> clip = ReadClip(folder, name, mocap.skeleton);
-    if (!clip.ok()) return clip.error();
-    mocap.clips.push_back(std::move(clip.value()));
-  }
-  if (mocap.clips.empty()) {
-    return Error{
-        "there are no clips below this folder; they are text files in a folder per "
-        "action (train/walking/walking_1.txt)",
-        folder};
-  }
-  std::stable_sort(mocap.clips.begin(), mocap.clips.end(),
-                   [](const auto& a, const auto& b) { return OrderOf(a) < OrderOf(b); });
-  return mocap;
+  return Caught([&] {
+    MocapFolder mocap;
+    mocap.skeleton = OrThrow(ReadMocapSkeleton(FindSkeleton(folder)));
+    for (const std::string& name : OrThrow(FilesBelow(folder))) {
+      const fs::path path(name);
+      if (path.extension() != ".txt" || !path.has_parent_path()) continue;
+      mocap.clips.push_back(ReadClip(folder, name, mocap.skeleton));
+    }
+    if (mocap.clips.empty()) {
+      throw Error{
+          "there are no clips below this folder; they are text files in a folder per "
+          "action (train/walking/walking_1.txt)",
+          folder};
+    }
+    std::stable_sort(mocap.clips.begin(), mocap.clips.end(),
+                     [](const auto& a, const auto& b) { return OrderOf(a) < OrderOf(b); });
+    return mocap;
+  });
 }
 
 Trajectories EverySecond(const Trajectories& motion, int phase) {
@@ -384,53 +364,35 @@ std::vector<LearntMotion> LearntMotions(const MocapFolder& mocap, bool with_vali
 }
 
 Result<MocapSkeleton> ReadMocapSkeleton(const std::string& path) {
-  Result<JsonDocument> document = JsonDocument{path, Human36mSkeleton(), {}};
-  if (path.empty()) {
-    document.value().content = Json::parse(document.value().text);
-  } else {
-    document = ReadJsonDocument(path);
-  }
-  if (!document.ok()) return document.error();
-  JsonFields fields(document.value(), document.value().content, "", "skeleton");
-  const int joints = fields.Whole("joints", "a number of joints", 1, kMostJoints);
-  MocapSkeleton skeleton;
-  skeleton.tree.parents = Indices("parents", -1, joints, &fields);
-  skeleton.tree.offsets = Offsets(joints, &fields);
-  skeleton.used = Indices("used", 0, joints, &fields);
-  const std::vector<int> same = Duplicates(joints, &fields);
-  const std::vector<int> mirrored =
-      MirroredJoints(fields.Text("mirror", "which joints a mirror pairs"), joints,
-                     &skeleton.layout.mirrored_axis, &fields);
-  bool in_order = static_cast<int>(skeleton.tree.parents.size()) == joints;
-  for (int i = 0; in_order && i < joints; ++i) in_order = skeleton.tree.parents[i] < i;
-  if (!in_order) fields.Fail("parents", "must name an earlier joint for each joint, or -1");
-  if (!std::is_sorted(skeleton.used.begin(), skeleton.used.end(), std::less_equal<int>()) ||
-      skeleton.used.empty()) {
-    fields.Fail("used", "must list joints once each, in ascending order");
-  }
-  if (!fields.failed()) SetLayout(mirrored, same, &fields, &skeleton);
-  if (fields.error()) return *fields.error();
-  return skeleton;
-}
-
-// Parents and offsets as the literature's forward kinematics has them. Of 32 joints ten are hips'
-// roots, or stand where another does.
-const char* Human36mSkeleton() {
-  return R"({
-  "joints": 32,
-  "parents": [-1, 0, 1, 2, 3, 4, 0, 6, 7, 8, 9, 0, 11, 12, 13, 14, 12, 16, 17, 18, 19, 20, 19, 22,
-    12, 24, 25, 26, 27, 28, 27, 30],
-  "offsets_mm": [[0, 0, 0], [-132.948591, 0, 0], [0, -442.894612, 0], [0, -454.206447, 0],
-    [0, 0, 162.767078], [0, 0, 74.999437], [132.948826, 0, 0], [0, -442.894413, 0],
-    [0, -454.20659, 0], [0, 0, 162.767426], [0, 0, 74.999948], [0, 0.1, 0], [0, 233.383263, 0],
-    [0, 257.077681, 0], [0, 121.134938, 0], [0, 115.002227, 0], [0, 257.077681, 0],
-    [0, 151.034226, 0], [0, 278.882773, 0], [0, 251.733451, 0], [0, 0, 0], [0, 0, 99.999627],
-    [0, 100.000188, 0], [0, 0, 0], [0, 257.077681, 0], [0, 151.031437, 0], [0, 278.892924, 0],
-    [0, 251.72868, 0], [0, 0, 0], [0, 0, 99.999888], [0, 137.499922, 0], [0, 0, 0]],
-  "used": [2, 3, 4, 5, 7, 8, 9, 10, 12, 13, 14, 15, 17, 18, 19, 21, 22, 25, 26, 27, 29, 30],
-  "duplicates": {"16": 13, "20": 19, "23": 22, "24": 13, "28": 27, "31": 30},
-  "mirror": "x -> -x; joints 1-5 <-> 6-10, 16-23 <-> 24-31"
-})";
+  return Caught([&] {
+    JsonDocument document{path, kHuman36mSkeleton, {}};
+    if (path.empty()) {
+      document.content = Json::parse(document.text);
+    } else {
+      document = OrThrow(ReadJsonDocument(path));
+    }
+    JsonFields fields(document, document.content, "", "skeleton");
+    const int joints = fields.Whole("joints", "a number of joints", 1, kMostJoints);
+    MocapSkeleton skeleton;
+    std::vector<int>& parents = skeleton.tree.parents;
+    parents = Indices("parents", -1, joints, &fields);
+    skeleton.tree.offsets = Offsets(joints, &fields);
+    skeleton.used = Indices("used", 0, joints, &fields);
+    const std::vector<int> same = Duplicates(joints, &fields);
+    const std::vector<int> mirrored =
+        MirroredJoints(fields.Text("mirror", "which joints a mirror pairs"), joints,
+                       &skeleton.layout.mirrored_axis, &fields);
+    bool in_order = static_cast<int>(parents.size()) == joints;
+    for (int i = 0; in_order && i < joints; ++i) in_order = parents[i] < i;
+    if (!in_order) fields.Fail("parents", "must name an earlier joint for each joint, or -1");
+    if (!std::is_sorted(skeleton.used.begin(), skeleton.used.end(), std::less_equal<int>()) ||
+        skeleton.used.empty()) {
+      fields.Fail("used", "must list joints once each, in ascending order");
+    }
+    if (!fields.failed()) SetLayout(mirrored, same, &fields, &skeleton);
+    OrThrow(fields.error());
+    return skeleton;
+  });
 }
 
 std::vector<std::pair<int, int>> PairedWindowStarts(int frames, int frames_of_other) {
@@ -457,26 +419,25 @@ bool IsRow(LineReader* reader, std::string_view* line) {
   return false;
 }
 
-std::string WhoseText(const StateRow& row) {
-  return Quoted(row.person) + " of recording " + Quoted(row.recording);
+std::string WhoseText(const std::string& person, const std::string& recording) {
+  return Quoted(person) + " of recording " + Quoted(recording);
 }
 
-Result<StateRow> RowOfCells(const LineReader& reader, std::string_view line) {
+StateRow RowOfCells(const LineReader& reader, std::string_view line) {
   const std::vector<std::string_view> cells = CellsOf(line, ',');
   if (cells.size() != 4) {
-    return reader.ErrorHere("a row has the four cells " + std::string(kHead) + ", not " +
-                            std::to_string(cells.size()));
+    throw reader.ErrorHere(
+        StrCat("a row has the four cells ", std::string(kHead), ", not ", cells.size()));
   }
-  std::vector<std::string> texts;
-  for (const std::string_view cell : cells) texts.emplace_back(Trimmed(cell));
   std::int64_t frame = 0;
-  if (!ParseInteger(texts[1], &frame) || frame < 0 || frame > kMostFrames) {
-    return reader.ErrorHere("frame is " + Quoted(texts[1]) +
-                            "; it must be a whole number from 0 on");
+  if (!ParseInteger(cells[1], &frame) || frame < 0 || frame > kMostFrames) {
+    throw reader.ErrorHere("frame is " + Quoted(cells[1]) +
+                           "; it must be a whole number from 0 on");
   }
-  if (texts[0].empty()) return reader.ErrorHere("the recording is missing; give its id");
-  if (texts[3].empty()) return reader.ErrorHere("the symbol is missing; name the state");
-  return StateRow{texts[0], texts[2], static_cast<int>(frame), texts[3], reader.line_number()};
+  if (cells[0].empty()) throw reader.ErrorHere("the recording is missing; give its id");
+  if (cells[3].empty()) throw reader.ErrorHere("the symbol is missing; name the state");
+  return {std::string(cells[0]), std::string(cells[2]), static_cast<int>(frame),
+          std::string(cells[3]), reader.line_number()};
 }
 
 // States of all frames from the frames at which symbols begin.
@@ -489,42 +450,28 @@ std::vector<std::string> Held(const std::map<int, std::string>& from, int frames
   return held;
 }
 
-void AppendChanges(const std::string& recording, const std::string& person,
-                   const std::vector<std::string>& symbols, std::string* text) {
-  for (size_t t = 0; t < symbols.size(); ++t) {
-    if (t > 0 && symbols[t] == symbols[t - 1]) continue;
-    *text += recording + "," + std::to_string(t) + "," + person + "," + symbols[t] + "\n";
-  }
-}
-
 }  // namespace
 
 Result<StateTable> ReadStates(const std::string& path) {
-  LineReader reader;
-  if (MaybeError failed = reader.Open(path)) return *std::move(failed);
-  StateTable table{path, {}};
-  std::string_view line;
-  if (!IsRow(&reader, &line)) {
-    return reader.error() ? *reader.error() : Error{"the file lists no states", path};
-  }
-  if (Trimmed(line) != kHead) {
-    return reader.ErrorHere("the first line must be " + std::string(kHead) + ", not " +
-                            Quoted(line));
-  }
-  std::set<std::tuple<std::string, std::string, int>> seen;
-  while (IsRow(&reader, &line)) {
-    Result<StateRow> row = RowOfCells(reader, line);
-    if (!row.ok()) return row.error();
-    const StateRow& r = row.value();
-    if (!seen.emplace(r.recording, r.person, r.frame).second) {
-      return reader.ErrorHere("the state of " + WhoseText(r) + " at frame " +
-                              std::to_string(r.frame) + " was given before");
+  return Caught([&] {
+    LineReader reader(path);
+    StateTable table{path, {}};
+    std::string_view line;
+    if (!IsRow(&reader, &line)) throw Error{"the file lists no states", path};
+    if (Trimmed(line) != kHead) {
+      throw reader.ErrorHere("the first line must be " + std::string(kHead) + ", not " +
+                             Quoted(line));
     }
-    table.rows.push_back(std::move(row.value()));
-  }
-  if (reader.error()) return *reader.error();
-  if (table.rows.empty()) return reader.ErrorHere("the file lists no states");
-  return table;
+    std::set<std::tuple<std::string, std::string, int>> seen;
+    while (IsRow(&reader, &line)) {
+      const StateRow& r = table.rows.emplace_back(RowOfCells(reader, line));
+      if (seen.emplace(r.recording, r.person, r.frame).second) continue;
+      throw reader.ErrorHere(StrCat("the state of ", WhoseText(r.person, r.recording), " at frame ",
+                                    r.frame, " was given before"));
+    }
+    if (table.rows.empty()) throw reader.ErrorHere("the file lists no states");
+    return table;
+  });
 }
 
 MaybeError CheckRecordings(const StateTable& table, const std::vector<std::string>& ids) {
@@ -551,22 +498,22 @@ Result<RecordedStates> StatesOf(const StateTable& table, const std::string& reco
                    table.path, row.line};
     }
     if (row.frame >= frames) {
-      return Error{"frame " + std::to_string(row.frame) + " is behind the end of recording " +
-                       Quoted(recording) + ", which has " + std::to_string(frames) + " frames",
+      return Error{StrCat("frame ", row.frame, " is behind the end of recording ",
+                          Quoted(recording), ", which has ", frames, " frames"),
                    table.path, row.line};
     }
     by_person[row.person][row.frame] = row.symbol;
   }
   for (const auto& [person, from] : by_person) {
     if (from.begin()->first == 0) continue;
-    return Error{"the states of " + WhoseText({recording, person}) + " begin at frame " +
-                     std::to_string(from.begin()->first) + "; give that of frame 0",
+    return Error{StrCat("the states of ", WhoseText(person, recording), " begin at frame ",
+                        from.begin()->first, "; give that of frame 0"),
                  table.path, last_line};
   }
   if (by_person.empty()) return states;
   for (const std::string& subject : subjects) {
     if (by_person.count(subject) == 0) {
-      return Error{"there are no states of " + WhoseText({recording, subject}) +
+      return Error{"there are no states of " + WhoseText(subject, recording) +
                        "; give them, or leave out those of the others",
                    table.path, last_line};
     }
@@ -579,7 +526,11 @@ MaybeError WriteStates(const std::string& path, const std::vector<RecordedStates
   std::string text = std::string(kHead) + "\n";
   for (const RecordedStates& states : recordings) {
     for (size_t n = 0; n < states.people.size(); ++n) {
-      AppendChanges(states.recording, states.subjects[n], states.people[n], &text);
+      const std::vector<std::string>& symbols = states.people[n];
+      for (size_t t = 0; t < symbols.size(); ++t) {
+        if (t > 0 && symbols[t] == symbols[t - 1]) continue;
+        text += StrCat(states.recording, ",", t, ",", states.subjects[n], ",", symbols[t], "\n");
+      }
     }
   }
   return WriteFileAtomically(path, text);

@@ -1,5 +1,5 @@
-// datasets: what generators learn from and are judged by beside recordings of pushes: states of
-// people as annotators have them, and a folder of motion-capture clips by action, as particles,
+// datasets: data beside recordings of pushes that generators learn from and are judged by: states
+// of people as annotators have them, and a folder of motion-capture clips by action, as particles,
 // with the windows of the clips that forecasts are made from.
 //
 //   FOLDER/skeleton.json               joints, parents, offsets_mm, used, duplicates, mirror
@@ -43,7 +43,6 @@ struct MocapFolder {
 
 // An empty path: that of Human3.6M.
 Result<MocapSkeleton> ReadMocapSkeleton(const std::string& path);
-const char* Human36mSkeleton();
 
 // Errors: no skeleton, no clips, a clip that is malformed (file, line, column).
 Result<MocapFolder> ReadMocapFolder(const std::string& folder);
@@ -104,8 +103,7 @@ struct LearntMotion {
 std::vector<LearntMotion> LearntMotions(const MocapFolder& mocap, bool with_validation,
                                         int phases = 2);
 
-// States of people as annotators have them, in one CSV file for all
-// recordings:
+// States of people as annotators have them, in one CSV file for all recordings:
 //
 //   recording,frame,person,symbol
 //   talk_01,0,S01,speak

@@ -26,17 +26,17 @@ Eigen::Matrix3Xd AboutMiddle(const std::vector<Eigen::Vector3d>& marks, Eigen::V
 }
 
 // Marks on one line, or one named twice, leave the tilt about it open.
-MaybeError CheckApart(const std::vector<Eigen::Vector3d>& marks, const ManifestGround& ground,
-                      const std::string& path) {
+void CheckApart(const std::vector<Eigen::Vector3d>& marks, const ManifestGround& ground,
+                const std::string& path) {
   Eigen::Vector3d middle;
   const Eigen::VectorXd spread = DecomposeRight(AboutMiddle(marks, &middle)).values;
   const double off = spread[1] / std::sqrt(static_cast<double>(marks.size()));
-  if (off >= kMarkersApart) return std::nullopt;
-  return Error{"the markers of the ground (" + ListOfNames(ground.markers) +
-                   ") lie on a line within " + Rounded(1000.0 * off, 2) +
-                   " mm, which leaves the tilt about it open; name one beside it, " +
-                   Rounded(1000.0 * kMarkersApart) + " mm or more",
-               path};
+  if (off >= kMarkersApart) return;
+  throw Error{"the markers of the ground (" + ListOfNames(ground.markers) +
+                  ") lie on a line within " + Rounded(1000.0 * off, 2) +
+                  " mm, which leaves the tilt about it open; name one beside it, " +
+                  Rounded(1000.0 * kMarkersApart) + " mm or more",
+              path};
 }
 
 // The turn that takes the marks of frame 0 to those of a frame best (Kabsch 1976), and where it and
@@ -53,8 +53,8 @@ void AddRigid(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen:
 }
 
 // A marker that slides, falls off or was exchanged for another moves the ground as it never moved.
-MaybeError CheckRigid(const std::vector<Track>& marks, const ManifestGround& ground,
-                      const std::string& path) {
+void CheckRigid(const std::vector<Track>& marks, const ManifestGround& ground,
+                const std::string& path) {
   for (size_t a = 0; a < marks.size(); ++a) {
     for (size_t b = 0; b < a; ++b) {
       double mean = 0.0, square = 0.0, farthest = 0.0;
@@ -68,21 +68,20 @@ MaybeError CheckRigid(const std::vector<Track>& marks, const ManifestGround& gro
         if (off > farthest) farthest = off, at = t;
       }
       if (square <= kRigidMarkers * kRigidMarkers) continue;
-      return Error{"the markers " + ground.markers[b] + " and " + ground.markers[a] +
-                       " of the ground are not rigid: their distance scatters by " +
-                       Rounded(1000.0 * std::sqrt(square), 2) + " mm about " +
-                       Rounded(1000.0 * mean, 3) + " mm, most at frame " + std::to_string(at) +
-                       ", and may by " + Rounded(1000.0 * kRigidMarkers) +
-                       " mm; leave out the one that moves on the platform",
-                   path};
+      throw Error{
+          StrCat("the markers ", ground.markers[b], " and ", ground.markers[a],
+                 " of the ground are not rigid: their distance scatters by ",
+                 Rounded(1000.0 * std::sqrt(square), 2), " mm about ", Rounded(1000.0 * mean, 3),
+                 " mm, most at frame ", at, ", and may by ", Rounded(1000.0 * kRigidMarkers),
+                 " mm; leave out the one that moves on the platform"),
+          path};
     }
   }
-  return std::nullopt;
 }
 
 // Short gaps are filled, and told; longer ones are errors.
-MaybeError CloseGaps(const ManifestRecording& entry, const std::string& path, double rate,
-                     std::vector<Track>* marks, Warnings* warnings) {
+void CloseGaps(const ManifestRecording& entry, const std::string& path, double rate,
+               std::vector<Track>* marks, Warnings* warnings) {
   for (size_t m = 0; m < marks->size(); ++m) {
     const std::string name = "the marker " + entry.ground.markers[m] + " of the ground";
     std::vector<double> weight((*marks)[m].size(), 1.0);
@@ -90,57 +89,43 @@ MaybeError CloseGaps(const ManifestRecording& entry, const std::string& path, do
         FillGaps(static_cast<int>(std::lround(kGroundGap * rate)), &(*marks)[m], &weight);
     const auto gap = std::find(weight.begin(), weight.end(), 0.0);
     if (gap != weight.end()) {
-      return Error{name + " is not seen at frame " + std::to_string(gap - weight.begin()) +
-                       " for longer than " + Rounded(kGroundGap) +
-                       " s; fill the gap, or leave the marker out",
-                   path};
+      throw Error{StrCat(name, " is not seen at frame ", gap - weight.begin(), " for longer than ",
+                         Rounded(kGroundGap), " s; fill the gap, or leave the marker out"),
+                  path};
     }
-    if (count.gaps == 0 || warnings == nullptr) continue;
-    const std::string told = name + " has " + std::to_string(count.gaps) +
-                             (count.gaps == 1 ? " gap, " : " gaps, ") +
-                             std::to_string(count.filled_frames) + " frames in all, filled by " +
-                             (count.gaps == 1 ? "a cubic" : "cubics");
-    warnings->emplace_back("recording " + Quoted(entry.id) + ": " + told, entry.id, told);
+    if (count.gaps == 0) continue;
+    WarnOf(entry.id,
+           StrCat(name, " has ", CountText(count.gaps, "gap"), ", ", count.filled_frames,
+                  " frames in all, filled by ", count.gaps == 1 ? "a cubic" : "cubics"),
+           warnings);
   }
-  return std::nullopt;
-}
-
-Result<std::vector<Track>> ReadMarkers(const ManifestRecording& entry, const std::string& path,
-                                       double* first_s) {
-  PointReadOptions options;
-  options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
-    std::vector<int> chosen;
-    for (const std::string& marker : entry.ground.markers) {
-      const auto found = std::find(names.begin(), names.end(), marker);
-      if (found == names.end()) return UnknownNameError(path, "marker", names, marker);
-      chosen.push_back(static_cast<int>(found - names.begin()));
-    }
-    return chosen;
-  };
-  const Result<PointMotion> read = ReadPointMotion(path, entry.motion_format, options);
-  if (!read.ok()) return read.error();
-  *first_s = read.value().first_time_s;
-  return read.value().positions;
 }
 
 }  // namespace
 
-Result<GroundTracks> GroundOfMarkers(const ManifestRecording& entry, const Recording& recording,
-                                     const GroundReading& reading, Warnings* warnings) {
+GroundTracks GroundOfMarkers(const ManifestRecording& entry, const Recording& recording,
+                             const GroundReading& reading, Warnings* warnings) {
   const std::string path = ResolvePath(entry.manifest, entry.motion[0]);
-  GroundTracks tracks{path, reading.file_fps, 0.0, {}, {}, {}};
-  Result<std::vector<Track>> read = ReadMarkers(entry, path, &tracks.first_s);
-  if (!read.ok()) return read.error();
-  std::vector<Track>& marks = read.value();
-  if (MaybeError failed = CloseGaps(entry, path, tracks.rate_hz, &marks, warnings)) {
-    return *std::move(failed);
-  }
+  PointReadOptions options;
+  options.choose = [&](const std::vector<std::string>& names) {
+    std::vector<int> chosen;
+    for (const std::string& marker : entry.ground.markers) {
+      const auto found = std::find(names.begin(), names.end(), marker);
+      if (found == names.end()) throw UnknownNameError(path, "marker", names, marker);
+      chosen.push_back(static_cast<int>(found - names.begin()));
+    }
+    return chosen;
+  };
+  PointMotion read = OrThrow(ReadPointMotion(path, entry.motion_format, options));
+  std::vector<Track>& marks = read.positions;
+  GroundTracks tracks{{path, reading.file_fps, read.first_time_s, 0, 0, marks[0].size()}};
+  CloseGaps(entry, path, tracks.rate_hz, &marks, warnings);
   const RecordedPerson& person = recording.people[0];
-  const Eigen::Matrix3d axes = AxesRotation(person.file_up, person.file_forward).value();
+  const Eigen::Matrix3d axes = AxesGiven(person.file_up, person.file_forward);
   for (Track& mark : marks) {
     for (Eigen::Vector3d& v : mark) v = reading.metres_per_unit * (axes * v);
   }
-  if (MaybeError failed = CheckRigid(marks, entry.ground, path)) return *std::move(failed);
+  CheckRigid(marks, entry.ground, path);
   const auto at = [&](int frame) {
     std::vector<Eigen::Vector3d> now;
     for (const Track& mark : marks) now.push_back(mark[frame]);
@@ -148,7 +133,7 @@ Result<GroundTracks> GroundOfMarkers(const ManifestRecording& entry, const Recor
   };
   const int frames = static_cast<int>(marks[0].size());
   const int first = std::clamp(entry.first_frame, 0, frames - 1);
-  if (MaybeError failed = CheckApart(at(first), entry.ground, path)) return *std::move(failed);
+  CheckApart(at(first), entry.ground, path);
   const Eigen::Vector3d under = 0.5 * (person.left_ankle[0] + person.right_ankle[0]);
   for (int t = 0; t < frames; ++t) AddRigid(at(first), at(t), under, &tracks);
   return tracks;

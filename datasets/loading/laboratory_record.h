@@ -8,7 +8,7 @@
 // lack are zero. Rates are summed up so that they are those by which a rollout steps
 // (models/ground.h), from rest. Of markers, the shift is that of the ground under the first person.
 //
-// What force platforms under a person measured, at the frames of the motion.
+// The measurements of force platforms under a person, at the frames of the motion.
 //
 // C3D: platforms of the types of sensors/force_sensors.h. Tables: columns that end with fx, fy, fz
 // (vx, vy, vz in OpenSim's) and px, py (and pz, which is not needed), for each platform behind a
@@ -60,64 +60,61 @@ Result<std::vector<GroundPose>> LoadGround(const ManifestRecording& entry,
                                            const GroundReading& reading = {},
                                            Warnings* warnings = nullptr);
 
-// Ground that moves as its file has it, in the project's axes.
-
-// Shift and tilt, evenly sampled.
-struct GroundTracks {
+// A record that is evenly sampled, in the project's axes.
+struct EvenRecord {
   std::string file;
   double rate_hz = 0.0, first_s = 0.0;
-  std::vector<Eigen::Vector3d> shift, tilt;  // z: nothing
-  std::vector<int> lines{};                  // of a file's rows
-  double last_s() const { return first_s + (static_cast<double>(shift.size()) - 1.0) / rate_hz; }
+  int first_line = 0, last_line = 0;  // of a table's rows
+  size_t samples = 0;
+
+  double last_s() const { return first_s + (static_cast<double>(samples) - 1.0) / rate_hz; }
 };
 
-// The ground of the table that the entry names.
-Result<GroundTracks> GroundOfCsv(const ManifestRecording& entry);
+struct GroundTracks : EvenRecord {
+  std::vector<Eigen::Vector3d> shift{}, tilt{};  // z: nothing
+};
+
+// The ground of the table that the entry names. Throws an Error.
+GroundTracks GroundOfCsv(const ManifestRecording& entry);
 
 inline constexpr double kWeightTolerance = 0.05;  // of the mean vertical force about m g
 inline constexpr double kFarFromFeet = 0.6;       // m, of the centre of pressure
 
-// Checks that whoever stands on the platforms of `file` weighs what these measure, and stands
-// nearest to where they are pressed.
-MaybeError CheckPlates(const std::string& file, const Recording& recording, int person);
+// Throws an Error unless whoever stands on the platforms of `file` weighs what these measure, and
+// stands nearest to where they are pressed.
+void CheckPlates(const std::string& file, const Recording& recording, int person);
 
-// Into the person's `plates`. Errors: those of the files, no such platform or column, a record that
-// ends early, a mean vertical force that is not the weight, a centre of pressure off the platform
-// or far from the feet. Warnings: those of the tracks.
-MaybeError LoadPlates(const ManifestRecording& entry, const ManifestPlates& plates,
-                      double lowpass_hz, Recording* recording, Warnings* warnings = nullptr);
+// Sets the person's `plates`. Throws Errors: those of the files, no such platform or column, a
+// record that ends early, a mean vertical force that is not the weight, a centre of pressure off
+// the platform or far from the feet. Warnings: those of the tracks.
+void LoadPlates(const ManifestRecording& entry, const ManifestPlates& plates, double lowpass_hz,
+                Recording* recording, Warnings* warnings = nullptr);
 
-// Force platforms as their files have them: read, turned to the project's axes, added up.
-
-// Evenly sampled, in the project's axes: force, and the moments [F_z p_x, F_z p_y, F_z].
-struct PlateTracks {
-  std::string file;
-  double rate_hz = 0.0, first_s = 0.0;
-  int last_line = 0;
+// Force platforms of a file, added up: force, and the moments [F_z p_x, F_z p_y, F_z].
+struct PlateTracks : EvenRecord {
   int platforms = 0;                    // that were added up
-  std::vector<std::string> warnings{};  // what is unusual about them, and which are left out
-  std::vector<Eigen::Vector3d> force, moment;
+  std::vector<std::string> warnings{};  // of unusual ones, and of those that are left out
+  std::vector<Eigen::Vector3d> force{}, moment{};
+  // Samples, counted from 0, at which the centre of a platform that is pressed is not known.
+  std::vector<int> unknown{};
 
   void Add(size_t at, const Eigen::Vector3d& on_person, const Eigen::Vector3d& centre) {
-    if (force.size() <= at) {
-      force.resize(at + 1, Eigen::Vector3d::Zero());
-      moment.resize(at + 1, Eigen::Vector3d::Zero());
+    if (samples <= at) {
+      samples = at + 1;
+      force.resize(samples, Eigen::Vector3d::Zero());
+      moment.resize(samples, Eigen::Vector3d::Zero());
     }
     force[at] += on_person;
     if (!centre.allFinite() || on_person.z() <= 0.0) return;
     moment[at] += on_person.z() * Eigen::Vector3d(centre.x(), centre.y(), 1.0);
   }
-  double last_s() const { return first_s + (static_cast<double>(force.size()) - 1.0) / rate_hz; }
-
-  // Samples, counted from 0, at which the centre of a platform that is pressed is not known.
-  std::vector<double> unknown{};
 };
 
 // The platforms of a manifest's entry, from the file that it names or from the motion's; a motion's
-// file has the axes of its person. Errors: those of the files, no such platform or column, a
+// file has the axes of its person. Throws Errors: those of the files, no such platform or column, a
 // platform that is named and cannot be evaluated, or none that can. Platforms of a C3D file that
 // are not named and cannot be are left out.
-Result<PlateTracks> ReadPlates(const ManifestRecording& entry, const ManifestPlates& plates,
-                               const RecordedPerson& person);
+PlateTracks ReadPlates(const ManifestRecording& entry, const ManifestPlates& plates,
+                       const RecordedPerson& person);
 
 }  // namespace pushid

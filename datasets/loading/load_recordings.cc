@@ -18,35 +18,24 @@
 namespace pushid {
 namespace {
 
-// Puts the recording's name in front of what went wrong with one of its files.
-Error OfRecording(const ManifestRecording& entry, Error error) {
-  error.message = "recording " + Quoted(entry.id) + ": " + error.message;
-  return error;
-}
-
-MaybeError CheckWithin(const Push& push, int num_frames) {
-  const std::string motion = "the motion has " + std::to_string(num_frames) + " frames";
+void CheckWithin(const Push& push, int num_frames) {
+  const std::string motion = StrCat("the motion has ", num_frames, " frames");
   if (push.start_frame > num_frames - 2) {
-    return Error{"the push starts at frame " + std::to_string(push.start_frame) + ", but " + motion,
-                 push.file, 0};
+    throw Error{StrCat("the push starts at frame ", push.start_frame, ", but ", motion), push.file};
   }
   // One row per frame is fine: a sensor records as long as the cameras, its last row drives no
   // step.
-  if (push.force.size() <= static_cast<std::size_t>(num_frames - push.start_frame)) {
-    return std::nullopt;
-  }
-  return Error{"the push is longer than the motion: it has " + std::to_string(push.force.size()) +
-                   " rows" +
-                   (push.start_frame > 0 ? " from frame " + std::to_string(push.start_frame) : "") +
-                   ", " + motion,
-               push.file, 0};
+  if (push.EndFrame() <= num_frames) return;
+  throw Error{
+      StrCat("the push is longer than the motion: it has ", push.force.size(), " rows",
+             push.start_frame > 0 ? StrCat(" from frame ", push.start_frame) : "", ", ", motion),
+      push.file};
 }
 
 // Rows as generalized forces: files without torques have the height that the manifest gives.
-Result<std::vector<Eigen::Vector4d>> GeneralizedRows(const ManifestRecording& recorded,
-                                                     const Push& push, PushRows rows,
-                                                     const Recording& recording,
-                                                     Warnings* warnings) {
+std::vector<Eigen::Vector4d> GeneralizedRows(const ManifestRecording& recorded, const Push& push,
+                                             PushRows rows, const Recording& recording,
+                                             Warnings* warnings) {
   if (!rows.has_torques) {
     std::vector<Eigen::Vector3d> forces;
     for (const Eigen::Vector4d& row : rows.force) forces.emplace_back(row[0], row[1], 0.0);
@@ -54,59 +43,35 @@ Result<std::vector<Eigen::Vector4d>> GeneralizedRows(const ManifestRecording& re
                         {1.0, recorded.push_height_m});
   }
   if (recorded.push_height_m) {
-    return Error{
+    throw Error{
         "the manifest gives push_height_m, and the push has the torques ftheta and fphi, "
         "which say its height as well; leave one of them out",
         push.file};
   }
   const auto at_ankles = [](const Eigen::Vector4d& row) { return row.tail<2>().isZero(0.0); };
   const auto idle = [](const Eigen::Vector4d& row) { return row.isZero(0.0); };
-  if (warnings != nullptr && recorded.push_kind == PushKind::kExternal &&
+  if (recorded.push_kind == PushKind::kExternal &&
       std::all_of(rows.force.begin(), rows.force.end(), at_ankles) &&
       !std::all_of(rows.force.begin(), rows.force.end(), idle)) {
-    const std::string what =
-        "has ftheta and fphi of 0 throughout, which is a push at the ankles; leave these columns "
-        "out for one at the hip, or at push_height_m";
-    warnings->emplace_back("recording " + Quoted(recorded.id) + ": the push " + what, recorded.id,
-                           "the push " + what);
+    WarnOf(recorded.id,
+           "the push has ftheta and fphi of 0 throughout, which is a push at the ankles; leave "
+           "these columns out for one at the hip, or at push_height_m",
+           warnings);
   }
   return std::move(rows.force);
 }
 
-MaybeError LoadPush(const ManifestRecording& recorded, const ManifestPush& entry, ContentHash* hash,
-                    Recording* recording, Warnings* warnings) {
+void LoadPush(const ManifestRecording& recorded, const ManifestPush& entry, ContentHash* hash,
+              Recording* recording, Warnings* warnings) {
   Push push;
   push.person = entry.person;
   push.file = ResolvePath(recorded.manifest, entry.csv);
   push.start_frame = entry.start_frame;
-  Result<PushRows> rows = ReadPushCsv(push.file);
-  if (!rows.ok()) return rows.error();
-  Result<std::vector<Eigen::Vector4d>> force =
-      GeneralizedRows(recorded, push, std::move(rows.value()), *recording, warnings);
-  if (!force.ok()) return force.error();
-  push.force = std::move(force.value());
-  if (MaybeError failed = CheckWithin(push, recording->num_frames())) return failed;
-  const Result<std::string> file_hash = HashFile(push.file);
-  if (!file_hash.ok()) return file_hash.error();
-  hash->Add(file_hash.value());
+  push.force =
+      GeneralizedRows(recorded, push, OrThrow(ReadPushCsv(push.file)), *recording, warnings);
+  CheckWithin(push, recording->num_frames());
+  hash->Add(OrThrow(HashFile(push.file)));
   recording->pushes.push_back(std::move(push));
-  return std::nullopt;
-}
-
-// Ground and platforms, at the frames of the motion as it is now.
-MaybeError LoadLaboratory(const ManifestRecording& entry, const GroundReading& reading,
-                          Recording* recording, Warnings* warnings) {
-  if (entry.ground.given()) {
-    Result<std::vector<GroundPose>> ground = LoadGround(entry, *recording, reading, warnings);
-    if (!ground.ok()) return ground.error();
-    recording->ground = std::move(ground.value());
-  }
-  for (const ManifestPlates& plates : entry.plates) {
-    if (MaybeError failed = LoadPlates(entry, plates, reading.lowpass_hz, recording, warnings)) {
-      return failed;
-    }
-  }
-  return std::nullopt;
 }
 
 using Track = std::vector<Eigen::Vector3d>;
@@ -162,26 +127,23 @@ class PersonLoader {
     path_ = ResolvePath(entry.manifest, entry.motion[index]);
   }
 
-  Result<LoadedPerson> Load() {
+  // Throws an Error.
+  LoadedPerson Load() {
     if (!entry_.mapping.empty()) {
-      Result<ColumnMapping> mapping =
-          ReadColumnMapping(ResolvePath(entry_.manifest, entry_.mapping));
-      if (!mapping.ok()) return mapping.error();
-      mapping_ = std::move(mapping.value());
-      const Result<std::string> hash = HashFile(ResolvePath(entry_.manifest, entry_.mapping));
-      if (!hash.ok()) return hash.error();
-      mapping_hash_ = hash.value();
+      const std::string file = ResolvePath(entry_.manifest, entry_.mapping);
+      mapping_ = OrThrow(ReadColumnMapping(file));
+      mapping_hash_ = OrThrow(HashFile(file));
     }
     joints_ = Overlaid(entry_.subjects[index_].joints, Overlaid(entry_.joints, mapping_.joints));
     const bool crowd = HoldsCrowd(entry_.motion_format) ||
                        (entry_.motion_format == MotionFormat::kCsv && IsCrowdCsv(path_));
-    if (crowd && !joints_.hip) {
-      return Error{kCrowdIsNoRecording, path_};
+    if (crowd && !joints_.hip) throw Error{kCrowdIsNoRecording, path_};
+    if (HasSkeleton(entry_.motion_format)) {
+      ReadSkeleton();
+    } else {
+      ReadPoints();
     }
-    if (MaybeError failed = HasSkeleton(entry_.motion_format) ? ReadSkeleton() : ReadPoints()) {
-      return *std::move(failed);
-    }
-    if (MaybeError failed = SetRate(motion_.frame_time_s)) return *std::move(failed);
+    SetRate();
     LoadedPerson loaded;
     loaded.fps = fps_;
     loaded.metres_per_unit = motion_.metres_per_unit;
@@ -194,52 +156,42 @@ class PersonLoader {
     person.skipped_s =
         entry_.first_frame * (motion_.frame_time_s > 0.0 ? motion_.frame_time_s : 1.0 / fps_);
     person.file_clock_s = motion_.first_time_s + person.skipped_s;
-    if (MaybeError failed = Cut()) return *std::move(failed);
-    if (MaybeError failed = CloseGaps(&person)) return *std::move(failed);
-    if (MaybeError failed = Turn(&person)) return *std::move(failed);
+    Cut();
+    CloseGaps(&person);
+    Turn(&person);
     Take(&person);
-    if (MaybeError failed = CheckMotion(person, motion_.metres_per_unit)) return *std::move(failed);
+    OrThrow(CheckMotion(person, motion_.metres_per_unit));
     return loaded;
   }
 
  private:
-  // Which of the file's `all` joints are read; where the pendulum's stand among those.
-  std::vector<int> Wanted(const PendulumJoints& joints, std::size_t all) {
-    std::vector<int> read(options_.keep_all_joints ? all : 0);
-    std::iota(read.begin(), read.end(), 0);
+  // Chooses the joints that are read of the file's, and sets their roles where all are kept;
+  // skeleton: null for points.
+  std::vector<int> Choose(const std::vector<std::string>& names, const BvhSkeleton* skeleton) {
+    const PendulumJoints joints =
+        OrThrow(skeleton != nullptr ? ChoosePendulumJoints(path_, *skeleton, joints_)
+                                    : ChoosePendulumPoints(path_, names, joints_));
+    std::vector<int> read;
+    if (options_.keep_all_joints) {
+      motion_.roles = OrThrow(ChooseRoles(path_, names, skeleton, joints, joints_));
+      read.resize(names.size());
+      std::iota(read.begin(), read.end(), 0);
+    }
     for (const PendulumTrack& row : kPendulumTracks) {
       motion_.places.*row.joints = Among(joints.*row.joints, &read);
     }
     return read;
   }
 
-  // Chooses what is read of the file's joints, and sets their roles where all are kept; skeleton:
-  // null for points.
-  Result<std::vector<int>> Choose(const std::vector<std::string>& names,
-                                  const BvhSkeleton* skeleton) {
-    const Result<PendulumJoints> joints = skeleton != nullptr
-                                              ? ChoosePendulumJoints(path_, *skeleton, joints_)
-                                              : ChoosePendulumPoints(path_, names, joints_);
-    if (!joints.ok()) return joints.error();
-    if (options_.keep_all_joints) {
-      Result<BodyRoles> roles = ChooseRoles(path_, names, skeleton, joints.value(), joints_);
-      if (!roles.ok()) return roles.error();
-      motion_.roles = std::move(roles.value());
-    }
-    return Wanted(joints.value(), names.size());
-  }
-
-  MaybeError ReadSkeleton() {
+  void ReadSkeleton() {
     motion_.metres_per_unit = MetresGiven().value_or(motion_.metres_per_unit);
     BvhPositionOptions options;
     options.metres_per_unit = motion_.metres_per_unit;
-    if (options_.keep_all_joints) options.kept_frame = entry_.first_frame;
+    options.keep_values = options_.keep_all_joints;
     options.choose_joints = [this](const BvhSkeleton& skeleton) {
       return Choose(skeleton.Names(), &skeleton);
     };
-    Result<BvhPositions> read = ReadBvhPositions(path_, options);
-    if (!read.ok()) return read.error();
-    BvhPositions& bvh = read.value();
+    BvhPositions bvh = OrThrow(ReadBvhPositions(path_, options));
     motion_.tracks = std::move(bvh.positions);
     motion_.frame_time_s = bvh.frame_time_s;
     motion_.content_hash = bvh.content_hash;
@@ -248,61 +200,56 @@ class PersonLoader {
       motion_.parents.push_back(bvh.skeleton.joints[joint].parent);
     }
     if (options_.keep_all_joints) {
-      motion_.skeleton = FileSkeleton{std::move(bvh.skeleton), std::move(bvh.kept_values),
+      const auto first =
+          bvh.values.begin() + std::min(entry_.first_frame, bvh.num_frames() - 1) *
+                                   static_cast<std::ptrdiff_t>(bvh.skeleton.num_channels());
+      motion_.skeleton = FileSkeleton{std::move(bvh.skeleton),
+                                      {first, first + bvh.skeleton.num_channels()},
                                       motion_.metres_per_unit};
     }
-    return std::nullopt;
   }
 
-  MaybeError ReadPoints() {
+  void ReadPoints() {
     PointReadOptions options;
     options.columns = mapping_.columns;
     options.time_column = mapping_.time_column;
     options.choose = [this](const std::vector<std::string>& names) {
       return Choose(names, nullptr);
     };
-    Result<PointMotion> read = ReadPointMotion(path_, entry_.motion_format, options);
-    if (!read.ok()) return read.error();
-    PointMotion& points = read.value();
-    if (MaybeError failed = SetUnit(points)) return failed;
+    PointMotion points = OrThrow(ReadPointMotion(path_, entry_.motion_format, options));
+    SetUnit(points);
     motion_.tracks = std::move(points.positions);
     for (Track& track : motion_.tracks) {
       for (Eigen::Vector3d& position : track) position *= motion_.metres_per_unit;
     }
-    PutBaseAtOrigin();
+    // A base of support at the origin of its log: elsewhere 0, 0, 0 is a point that was not seen.
+    for (int base : motion_.places.left_ankle) {
+      Track& track = motion_.tracks[base];
+      const bool is_base = joints_.others.count(kBaseRole) > 0;
+      if (is_base && NeverSeen(track)) track.assign(track.size(), Eigen::Vector3d::Zero());
+    }
     const double rate = mapping_.frame_rate > 0.0 ? mapping_.frame_rate : points.rate_hz;
     motion_.frame_time_s = rate > 0.0 ? 1.0 / rate : 0.0;
     motion_.first_time_s = points.first_time_s;
     motion_.content_hash = points.content_hash;
     for (int point : points.chosen) motion_.names.push_back(points.names[point]);
     motion_.parents.assign(motion_.names.size(), -1);
-    return std::nullopt;
   }
 
-  // An Error where a file gives a unit that is not known and nothing else says one.
-  MaybeError SetUnit(const PointMotion& points) {
+  // Throws where a file gives a unit that is not known and nothing else says one.
+  void SetUnit(const PointMotion& points) {
     const std::optional<double> given = MetresGiven();
     const double files = points.unit ? MetresPer(*points.unit) : motion_.metres_per_unit;
     motion_.metres_per_unit = given.value_or(files);
     if (!points.unit && !Trimmed(points.unit_text).empty() && !given) {
-      return Error{"gives lengths in " + Quoted(points.unit_text) +
-                       ", an unknown unit; give length_unit (" + AnyName<LengthUnit>() +
-                       ") or length_scale (m) in the manifest",
-                   path_};
+      throw Error{"gives lengths in " + Quoted(points.unit_text) +
+                      ", an unknown unit; give length_unit (" + AnyName<LengthUnit>() +
+                      ") or length_scale (m) in the manifest",
+                  path_};
     }
     if (points.unit && files != motion_.metres_per_unit) {
       Warn("gives lengths in " + NameOf(*points.unit) + "; they are read as " +
            LengthText(motion_.metres_per_unit));
-    }
-    return std::nullopt;
-  }
-
-  // A base of support at the origin of its log: elsewhere 0, 0, 0 is a point that was not seen.
-  void PutBaseAtOrigin() {
-    if (joints_.others.count(kBaseRole) == 0) return;
-    for (int base : motion_.places.left_ankle) {
-      Track& track = motion_.tracks[base];
-      if (NeverSeen(track)) track.assign(track.size(), Eigen::Vector3d::Zero());
     }
   }
 
@@ -322,139 +269,112 @@ class PersonLoader {
   }
 
   void Warn(const std::string& warning) const {
-    if (warnings_ == nullptr) return;
     // The file as the manifest names it: results keep warnings, and not where the data lay.
-    const std::string& file = entry_.motion[index_];
-    warnings_->emplace_back("recording " + Quoted(entry_.id) + ": " + file + " " + warning,
-                            entry_.id, "the file " + warning);
+    WarnOf(entry_.id, entry_.motion[index_] + " " + warning, warnings_, "the file " + warning);
   }
 
   // The manifest's rate; where it gives none, that of the file.
-  MaybeError SetRate(double frame_time_s) {
+  void SetRate() {
+    const double frame_time_s = motion_.frame_time_s;
     fps_ = entry_.fps;
     if (fps_ > 0.0) {
-      WarnOfRate(frame_time_s);
-      return std::nullopt;
+      if (frame_time_s == 0.0 || std::abs(frame_time_s * fps_ - 1.0) <= kFrameTimeTolerance) return;
+      return Warn("has a frame time of " + Rounded(frame_time_s) + " s (" +
+                  Rounded(1.0 / frame_time_s) + " frames per second), the manifest gives " +
+                  Rounded(fps_) + " frames per second; the manifest's value is used");
     }
     if (frame_time_s == 0.0) {
-      return Error{
+      throw Error{
           "neither the file nor the manifest gives the frame rate; give fps in the manifest",
           path_};
     }
     fps_ = WholeFrameRate(1.0 / frame_time_s);
     const std::string problem = FrameRateProblem(fps_);
-    if (problem.empty()) return std::nullopt;
-    return Error{"the file's frame rate " + problem + "; give the right one as fps in the manifest",
-                 path_};
+    if (problem.empty()) return;
+    throw Error{"the file's frame rate " + problem + "; give the right one as fps in the manifest",
+                path_};
   }
 
-  void WarnOfRate(double frame_time_s) const {
-    if (frame_time_s == 0.0 || std::abs(frame_time_s * fps_ - 1.0) <= kFrameTimeTolerance) {
-      return;
-    }
-    Warn("has a frame time of " + Rounded(frame_time_s) + " s (" + Rounded(1.0 / frame_time_s) +
-         " frames per second), the manifest gives " + Rounded(fps_) +
-         " frames per second; the manifest's value is used");
-  }
-
-  MaybeError Cut() {
+  void Cut() {
     const int frames = static_cast<int>(motion_.tracks[0].size());
     if (entry_.frames && *entry_.frames != frames) {
-      return Error{"wrong frame count: the file has " + std::to_string(frames) +
-                       " frames, the manifest gives " + std::to_string(*entry_.frames),
-                   path_};
+      throw Error{StrCat("wrong frame count: the file has ", frames, " frames, the manifest gives ",
+                         *entry_.frames),
+                  path_};
     }
     const int end = entry_.end_frame.value_or(frames);
-    if (entry_.first_frame == 0 && end == frames) return std::nullopt;
     if (end > frames || entry_.first_frame >= end) {
-      return Error{"the file has " + std::to_string(frames) + " frames, too few for first_frame " +
-                       std::to_string(entry_.first_frame) + " and end_frame " + std::to_string(end),
-                   path_};
+      throw Error{StrCat("the file has ", frames, " frames, too few for first_frame ",
+                         entry_.first_frame, " and end_frame ", end),
+                  path_};
     }
     for (Track& track : motion_.tracks) {
-      track = Track(track.begin() + entry_.first_frame, track.begin() + end);
+      track.resize(end);
+      track.erase(track.begin(), track.begin() + entry_.first_frame);
     }
-    return std::nullopt;
   }
 
   // A frame loses weight only by gaps of hip and ankles.
-  MaybeError CloseGaps(RecordedPerson* person) {
-    const std::size_t frames = motion_.tracks[0].size();
+  void CloseGaps(RecordedPerson* person) {
+    const int frames = static_cast<int>(motion_.tracks[0].size());
     const int max_gap = static_cast<int>(std::floor(options_.preparation.max_gap_s * fps_ + 1e-9));
     std::vector<double> unused(frames, 1.0);
     std::vector<Track*> counting;
     for (std::size_t i = 0; i < motion_.tracks.size(); ++i) {
       Track& track = motion_.tracks[i];
-      if (IsPlace(motion_.places, static_cast<int>(i))) {
+      const auto holds = [i](const std::vector<int>& joints) {
+        return std::find(joints.begin(), joints.end(), static_cast<int>(i)) != joints.end();
+      };
+      if (std::any_of(std::begin(kPendulumTracks), std::end(kPendulumTracks), [&](const auto& row) {
+            return row.required && holds(motion_.places.*row.joints);
+          })) {
         counting.push_back(&track);
-        if (NeverSeen(track)) {
-          return Error{motion_.names[i] + " is never seen; choose another by \"joints\"", path_};
-        }
-        continue;
+        if (!NeverSeen(track)) continue;
+        throw Error{motion_.names[i] + " is never seen; choose another by \"joints\"", path_};
       }
       const GapCount count = FillGaps(max_gap, &track, &unused);
-      if (count.excluded_frames > 0) Forget(static_cast<int>(i), &motion_.places);
-      if (count.excluded_frames == static_cast<int>(frames)) {
-        ForgetRoles(static_cast<int>(i), &motion_.roles);
+      // A toe or heel that is lost for long says nothing of where the foot stands, and a marker
+      // that is never seen plays no role.
+      for (const PendulumTrack& row : kPendulumTracks) {
+        std::vector<int>& joints = motion_.places.*row.joints;
+        if (count.excluded_frames > 0 && !row.required && holds(joints)) joints.clear();
+      }
+      if (count.excluded_frames < frames) continue;
+      BodyRoles& roles = motion_.roles;
+      for (std::vector<int>& joints : roles.joints) {
+        if (holds(joints)) joints.clear();
+      }
+      for (std::vector<int>* joints : {&roles.left_asis, &roles.right_asis, &roles.back}) {
+        if (holds(*joints)) joints->clear();
       }
     }
     FilledTracks filled = FillTracks(max_gap, counting);
     std::vector<double>& weight = filled.weight;
-    if (filled.gaps == 0) return std::nullopt;
+    if (filled.gaps == 0) return;
     if (weight[0] == 0.0) {
       const auto seen = std::find(weight.begin(), weight.end(), 1.0);
-      return Error{"at frame " + std::to_string(entry_.first_frame) +
-                       ", where the fit starts, hip or ankles are missing; " +
-                       (seen == weight.end()
-                            ? std::string("no frame shows them all")
-                            : "set first_frame to " +
-                                  std::to_string(entry_.first_frame + (seen - weight.begin())) +
-                                  " or later in the manifest"),
-                   path_};
+      throw Error{StrCat("at frame ", entry_.first_frame,
+                         ", where the fit starts, hip or ankles are missing; ",
+                         seen == weight.end() ? std::string("no frame shows them all")
+                                              : StrCat("set first_frame to ",
+                                                       entry_.first_frame + (seen - weight.begin()),
+                                                       " or later in the manifest")),
+                  path_};
     }
     Warn(filled.Warning(options_.preparation.max_gap_s));
     if (!filled.AllCount()) person->weight = std::move(weight);
-    return std::nullopt;
   }
 
-  // A toe or heel that is lost for long says nothing of where the foot stands.
-  static void Forget(int track, PendulumJoints* places) {
-    for (const PendulumTrack& row : kPendulumTracks) {
-      if (!row.required && Holds(places->*row.joints, track)) (places->*row.joints).clear();
-    }
-  }
-
-  // A marker that is never seen plays no role.
-  static void ForgetRoles(int track, BodyRoles* roles) {
-    for (std::vector<int>& joints : roles->joints) {
-      if (Holds(joints, track)) joints.clear();
-    }
-    for (std::vector<int>* joints : {&roles->left_asis, &roles->right_asis, &roles->back}) {
-      if (Holds(*joints, track)) joints->clear();
-    }
-  }
-
-  static bool IsPlace(const PendulumJoints& places, int track) {
-    for (const PendulumTrack& row : kPendulumTracks) {
-      if (row.required && Holds(places.*row.joints, track)) return true;
-    }
-    return false;
-  }
-  static bool Holds(const std::vector<int>& joints, int track) {
-    return std::find(joints.begin(), joints.end(), track) != joints.end();
-  }
-
-  MaybeError Turn(RecordedPerson* person) {
+  void Turn(RecordedPerson* person) {
     const bool own =
         mapping_.up.empty() || entry_.json->contains("up") || entry_.json->contains("forward");
     person->file_up = own ? entry_.up : mapping_.up;
     person->file_forward = own ? entry_.forward : mapping_.forward;
-    const Result<Eigen::Matrix3d> rotation = AxesRotation(person->file_up, person->file_forward);
-    if (!rotation.ok()) return rotation.error();
+    const Eigen::Matrix3d axes = OrThrow(AxesRotation(person->file_up, person->file_forward));
+    if (motion_.skeleton) motion_.skeleton->world_from_file = axes;
     for (Track& track : motion_.tracks) {
-      for (Eigen::Vector3d& position : track) position = rotation.value() * position;
+      for (Eigen::Vector3d& position : track) position = axes * position;
     }
-    return std::nullopt;
   }
 
   static Track Mean(const std::vector<Track>& tracks, const std::vector<int>& chosen) {
@@ -476,10 +396,6 @@ class PersonLoader {
     person->joint_parents = motion_.parents;
     person->roles = motion_.roles;
     person->skeleton = std::move(motion_.skeleton);
-    if (person->skeleton) {
-      person->skeleton->world_from_file =
-          AxesRotation(person->file_up, person->file_forward).value();
-    }
     const std::vector<int> filled = FilledRoles(motion_.roles);
     if (!filled.empty() && UnfilledRoles(motion_.roles).empty()) {
       Warn(
@@ -510,14 +426,12 @@ class PersonLoader {
 constexpr double kUnseenStance = 0.1;  // m, of ankles that nobody saw
 
 // The person of a recording without motion, for as long as their platforms measured.
-Result<LoadedPerson> LoadPersonOnPlates(const ManifestRecording& entry) {
+LoadedPerson LoadPersonOnPlates(const ManifestRecording& entry) {
   const ManifestPlates& plates = entry.plates[0];
   const ManifestSubject& subject = entry.subjects[0];
   LoadedPerson loaded;
   RecordedPerson& person = loaded.person;
-  const Result<PlateTracks> read = ReadPlates(entry, plates, person);
-  if (!read.ok()) return read.error();
-  const PlateTracks& tracks = read.value();
+  const PlateTracks tracks = ReadPlates(entry, plates, person);
   person.subject_id = subject.id;
   person.mass_kg = subject.mass_kg;
   person.known = subject.known;
@@ -527,38 +441,31 @@ Result<LoadedPerson> LoadPersonOnPlates(const ManifestRecording& entry) {
   loaded.fps = entry.fps > 0.0 ? entry.fps : WholeFrameRate(tracks.rate_hz);
   const std::string problem = FrameRateProblem(loaded.fps);
   if (!problem.empty()) {
-    return Error{"the platforms' rate " + problem + "; give fps in the manifest", tracks.file};
+    throw Error{"the platforms' rate " + problem + "; give fps in the manifest", tracks.file};
   }
   const double seconds = tracks.last_s() - person.file_clock_s;
   const int frames = 1 + static_cast<int>(std::floor(seconds * loaded.fps + 1e-6));
   if (!(seconds > 0.0) || frames < 3) {
-    return Error{"the platforms were recorded from " + Rounded(tracks.first_s, 4) + " to " +
-                     Rounded(tracks.last_s(), 4) + " s, which leaves nothing after \"start\" (" +
-                     Rounded(person.file_clock_s, 4) + " s)",
-                 tracks.file, tracks.last_line};
+    throw Error{"the platforms were recorded from " + Rounded(tracks.first_s, 4) + " to " +
+                    Rounded(tracks.last_s(), 4) + " s, which leaves nothing after \"start\" (" +
+                    Rounded(person.file_clock_s, 4) + " s)",
+                tracks.file, tracks.last_line};
   }
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& row : tracks.moment) moment += row;
   Eigen::Vector3d ankles(0.0, 0.0, subject.ankle_height_m);
   if (moment.z() > 0.0) ankles.head<2>() = moment.head<2>() / moment.z();
-  const auto stays = [frames](const Eigen::Vector3d& place) {
-    return std::vector<Eigen::Vector3d>(static_cast<size_t>(frames), place);
-  };
-  person.hip = stays(ankles + Eigen::Vector3d(0.0, 0.0, subject.rod_m));
-  person.left_ankle = stays(ankles + Eigen::Vector3d(0.0, kUnseenStance, 0.0));
-  person.right_ankle = stays(ankles - Eigen::Vector3d(0.0, kUnseenStance, 0.0));
-  person.weight.assign(static_cast<size_t>(frames), 0.0);
-  const Result<std::string> hash = HashFile(tracks.file);
-  if (!hash.ok()) return hash.error();
-  loaded.file_hash = hash.value();
-  if (MaybeError failed = CheckMotion(person, 1.0)) return *std::move(failed);
+  person.hip.assign(frames, ankles + Eigen::Vector3d(0.0, 0.0, subject.rod_m));
+  person.left_ankle.assign(frames, ankles + Eigen::Vector3d(0.0, kUnseenStance, 0.0));
+  person.right_ankle.assign(frames, ankles - Eigen::Vector3d(0.0, kUnseenStance, 0.0));
+  person.weight.assign(frames, 0.0);
+  loaded.file_hash = OrThrow(HashFile(tracks.file));
+  OrThrow(CheckMotion(person, 1.0));
   return loaded;
 }
 
-}  // namespace
-
-Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecording& entry,
-                                const LoadOptions& options, Warnings* warnings) {
+Recording Load(const Manifest& manifest, const ManifestRecording& entry, const LoadOptions& options,
+               Warnings* warnings) {
   Recording recording;
   recording.id = entry.id;
   recording.labels = entry.labels;
@@ -566,89 +473,90 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
   recording.push_kind = entry.push_kind;
   recording.initial_velocity = entry.initial_velocity;
   recording.stated_errors = entry.stated_errors;
-
   for (const std::string& misspelt : MisspeltKeys(entry)) {
     if (warnings == nullptr) continue;
     warnings->emplace_back("recording " + Quoted(entry.id) + " " + misspelt, entry.id, misspelt);
   }
-
+  if (entry.plates_alone && !options.plates_alone) {
+    throw Error{
+        "was measured by force plates alone (\"motion\": \"none\"), which only pushid-fit "
+        "(--stance=fixed) and pushid-inspect can use; leave it out (--leave_out), or name "
+        "the files of its motion",
+        entry.manifest, entry.line};
+  }
   GroundReading reading;
   ContentHash hash;  // of the files' hashes, so that contents cannot slide from one into the next
-  if (entry.plates_alone && !options.plates_alone) {
-    return OfRecording(entry, {"was measured by force plates alone (\"motion\": \"none\"), which "
-                               "only pushid-fit (--stance=fixed) and pushid-inspect can use; leave "
-                               "it out (--leave_out), or name the files of its motion",
-                               entry.manifest, entry.line});
-  }
   for (std::size_t i = 0; i < entry.subjects.size(); ++i) {
-    Result<LoadedPerson> loaded = entry.plates_alone
-                                      ? LoadPersonOnPlates(entry)
-                                      : PersonLoader(manifest, entry, i, options, warnings).Load();
-    if (!loaded.ok()) return OfRecording(entry, loaded.error());
-    hash.Add(loaded.value().file_hash);
-    RecordedPerson& person = loaded.value().person;
+    LoadedPerson loaded = entry.plates_alone
+                              ? LoadPersonOnPlates(entry)
+                              : PersonLoader(manifest, entry, i, options, warnings).Load();
+    hash.Add(loaded.file_hash);
+    RecordedPerson& person = loaded.person;
     if (i == 0) {
-      recording.fps = loaded.value().fps;
-      reading = {loaded.value().metres_per_unit, recording.fps, options.preparation.lowpass_hz};
+      recording.fps = loaded.fps;
+      reading = {loaded.metres_per_unit, recording.fps, options.preparation.lowpass_hz};
     }
-    if (loaded.value().fps != recording.fps) {
-      return OfRecording(
-          entry, {"the file gives " + Rounded(loaded.value().fps) + " frames per second, but " +
+    if (loaded.fps != recording.fps) {
+      throw Error{"the file gives " + Rounded(loaded.fps) + " frames per second, but " +
                       recording.people[0].file + " gives " + Rounded(recording.fps) +
                       "; give the right one as fps in the manifest",
-                  person.file});
+                  person.file};
     }
     if (i > 0 && person.hip.size() != recording.people[0].hip.size()) {
-      return OfRecording(entry, {"the file has " + std::to_string(person.hip.size()) +
-                                     " frames, but " + recording.people[0].file + " has " +
-                                     std::to_string(recording.people[0].hip.size()) +
-                                     "; the people of one recording share their frames",
-                                 person.file, 0});
+      throw Error{StrCat("the file has ", person.hip.size(), " frames, but ",
+                         recording.people[0].file, " has ", recording.people[0].hip.size(),
+                         "; the people of one recording share their frames"),
+                  person.file};
     }
     recording.people.push_back(std::move(person));
   }
-
   std::vector<ManifestPush> pushes = entry.pushes;
   if (!entry.push_csv.empty()) {
     pushes.insert(pushes.begin(), ManifestPush{entry.pushed_person, entry.push_csv, 0});
   }
-  for (const ManifestPush& push : pushes) {
-    if (MaybeError failed = LoadPush(entry, push, &hash, &recording, warnings)) {
-      return OfRecording(entry, *std::move(failed));
-    }
-  }
+  for (const ManifestPush& push : pushes) LoadPush(entry, push, &hash, &recording, warnings);
   recording.content_hash = hash.Hex();
-  if (MaybeError failed = PrepareMotion(options.preparation, &recording)) {
-    return OfRecording(entry, *std::move(failed));
+  OrThrow(PrepareMotion(options.preparation, &recording));
+  if (entry.ground.given()) {
+    recording.ground = OrThrow(LoadGround(entry, recording, reading, warnings));
   }
-  if (MaybeError failed = LoadLaboratory(entry, reading, &recording, warnings)) {
-    return OfRecording(entry, *std::move(failed));
+  for (const ManifestPlates& plates : entry.plates) {
+    LoadPlates(entry, plates, reading.lowpass_hz, &recording, warnings);
   }
   return recording;
 }
 
+}  // namespace
+
+Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecording& entry,
+                                const LoadOptions& options, Warnings* warnings) {
+  Result<Recording> loaded = Caught([&] { return Load(manifest, entry, options, warnings); });
+  if (loaded.ok()) return loaded;
+  Error error = loaded.error();
+  error.message = "recording " + Quoted(entry.id) + ": " + error.message;
+  return error;
+}
+
 Result<std::vector<Recording>> LoadRecordings(const std::string& manifests,
                                               const LoadOptions& options, Warnings* warnings) {
-  if (MaybeError wrong = CheckPreparation(options.preparation)) return *std::move(wrong);
-  const Result<Manifest> manifest = ReadManifests(manifests);
-  if (!manifest.ok()) return manifest.error();
-  return LoadRecordings(manifest.value(), options, warnings);
+  return Caught([&] {
+    OrThrow(CheckPreparation(options.preparation));
+    return OrThrow(LoadRecordings(OrThrow(ReadManifests(manifests)), options, warnings));
+  });
 }
 
 Result<std::vector<Recording>> LoadRecordings(const Manifest& manifest, const LoadOptions& options,
                                               Warnings* warnings) {
-  if (MaybeError wrong = CheckPreparation(options.preparation)) return *std::move(wrong);
-  const Result<std::vector<int>> selected =
-      SelectRecordings(manifest, options.setting, options.ids, options.leave_out);
-  if (!selected.ok()) return selected.error();
-  std::vector<Recording> recordings;
-  for (int index : selected.value()) {
-    Result<Recording> recording =
-        LoadRecording(manifest, manifest.recordings[index], options, warnings);
-    if (!recording.ok()) return recording.error();
-    recordings.push_back(std::move(recording.value()));
-  }
-  return recordings;
+  return Caught([&] {
+    OrThrow(CheckPreparation(options.preparation));
+    std::vector<Recording> recordings;
+    for (int index :
+         OrThrow(SelectRecordings(manifest, options.setting, options.ids, options.leave_out))) {
+      recordings.push_back(
+          OrThrow(LoadRecording(manifest, manifest.recordings[index], options, warnings)));
+    }
+    return recordings;
+  });
 }
 
 }  // namespace pushid

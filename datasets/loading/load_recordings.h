@@ -25,7 +25,7 @@ struct LoadOptions {
   std::optional<LengthUnit> length_unit;
   // Instead of a unit, the metres in one of the files' lengths (--length_scale).
   std::optional<double> length_scale;
-  // Which recordings: see SelectRecordings. Only those are read.
+  // The recordings that are read, as SelectRecordings takes them.
   std::string setting = "all";
   // Only these ids are loaded; empty: all of the setting.
   std::vector<std::string> ids;

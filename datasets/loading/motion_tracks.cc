@@ -46,28 +46,12 @@ void ForEachTrack(RecordedPerson* person, const Change& change) {
   }
 }
 
-bool IsRate(double value) { return FrameRateProblem(value).empty(); }
-
 constexpr double kShortestRod = 0.12, kLongestRod = 3.0;  // m; a small humanoid robot has 0.3
 constexpr double kLargestLean = 1.0;                      // rad; beyond it the person has fallen
 constexpr double kFarthest = 1e5;                         // m
 constexpr int kFewestFrames = 3;                          // an acceleration takes three
 
 constexpr double kShortestAdult = 0.5, kLongestAdult = 1.5;  // m, of rods
-
-MaybeError CheckTrack(const RecordedPerson& person, const char* what,
-                      const std::vector<Eigen::Vector3d>& track) {
-  for (std::size_t frame = 0; frame < track.size(); ++frame) {
-    // Written so that NaN fails.
-    if (!(track[frame].cwiseAbs().maxCoeff() < kFarthest) || !track[frame].allFinite()) {
-      return Error{std::string("the ") + what + " is " + Rounded(track[frame].norm(), 3) +
-                       " m from the origin at frame " + std::to_string(frame) +
-                       ": a number is damaged, or the unit is wrong (--length_unit)",
-                   person.file, 0};
-    }
-  }
-  return std::nullopt;
-}
 
 using Eigen::Vector3d;
 
@@ -94,12 +78,6 @@ void FillInside(int before, int after, bool curved, std::vector<Vector3d>* track
 
 constexpr double kManyInterpolated = 0.1;  // of the frames that count
 
-bool Many(int interpolated, int counting) {
-  return interpolated > kManyInterpolated * static_cast<double>(counting);
-}
-
-double TwoPassCorrection() { return std::pow(std::sqrt(2.0) - 1.0, 0.25); }
-
 // y_i = b (x_i + 2 x_{i-1} + x_{i-2}) - a1 y_{i-1} - a2 y_{i-2}
 struct Biquad {
   double b, a1, a2;
@@ -107,7 +85,7 @@ struct Biquad {
 
 // A filter of which two passes lose 3 dB at the cut-off.
 Biquad Butterworth(double cutoff_hz, double rate_hz) {
-  const double k = std::tan(M_PI * cutoff_hz / rate_hz) / TwoPassCorrection();
+  const double k = std::tan(M_PI * cutoff_hz / rate_hz) / std::pow(std::sqrt(2.0) - 1.0, 0.25);
   const double q = std::sqrt(2.0) * k;
   const double norm = 1.0 / (1.0 + q + k * k);
   return {k * k * norm, 2.0 * (k * k - 1.0) * norm, (1.0 - q + k * k) * norm};
@@ -118,15 +96,11 @@ void Pass(const Biquad& filter, std::vector<Vector3d>* x) {
   Vector3d x1 = x->front(), x2 = x1, y1 = x1, y2 = x1;
   for (Vector3d& value : *x) {
     const Vector3d y = filter.b * (value + 2.0 * x1 + x2) - filter.a1 * y1 - filter.a2 * y2;
-    x2 = x1;
-    x1 = value;
-    y2 = y1;
-    y1 = y;
+    x2 = std::exchange(x1, value);
+    y2 = std::exchange(y1, y);
     value = y;
   }
 }
-
-using Position = Eigen::Vector3d;
 
 constexpr double kRounding = 1e-9;  // of a frame
 
@@ -145,7 +119,7 @@ MaybeError CheckPreparation(const PreparationOptions& options) {
                  "; it must be a cut-off of at least " + Rounded(kSlowestCutoff) +
                  " Hz (a lower one removes the push), or 0 for none"};
   }
-  if (options.resample_fps != 0.0 && !IsRate(options.resample_fps)) {
+  if (options.resample_fps != 0.0 && !FrameRateProblem(options.resample_fps).empty()) {
     return Error{"--resample_fps is " + Rounded(options.resample_fps) +
                  "; it must be from 1 to 10000 frames per second, or 0 for the recording's own"};
   }
@@ -190,8 +164,7 @@ MaybeError PrepareMotion(const PreparationOptions& options, Recording* recording
 
 MaybeError CheckMotion(const RecordedPerson& person, double metres_per_unit) {
   if (person.hip.size() < kFewestFrames) {
-    return Error{"the motion has " + std::to_string(person.hip.size()) +
-                     " frames; at least three are needed",
+    return Error{StrCat("the motion has ", person.hip.size(), " frames; at least three are needed"),
                  person.file, 0};
   }
   const Eigen::Vector3d rod = person.hip[0] - 0.5 * (person.left_ankle[0] + person.right_ankle[0]);
@@ -215,9 +188,19 @@ MaybeError CheckMotion(const RecordedPerson& person, double metres_per_unit) {
                      "\"forward\" in the manifest; otherwise check \"joints\"",
                  person.file, 0};
   }
-  if (MaybeError failed = CheckTrack(person, "hip", person.hip)) return failed;
-  if (MaybeError failed = CheckTrack(person, "left ankle", person.left_ankle)) return failed;
-  return CheckTrack(person, "right ankle", person.right_ankle);
+  for (const auto& [name, track] : {std::pair("hip", &person.hip),
+                                    {"left ankle", &person.left_ankle},
+                                    {"right ankle", &person.right_ankle}}) {
+    for (std::size_t frame = 0; frame < track->size(); ++frame) {
+      const Vector3d& place = (*track)[frame];
+      if (place.allFinite() && place.cwiseAbs().maxCoeff() < kFarthest) continue;
+      return Error{
+          StrCat("the ", name, " is ", Rounded(place.norm(), 3), " m from the origin at frame ",
+                 frame, ": a number is damaged, or the unit is wrong (--length_unit)"),
+          person.file};
+    }
+  }
+  return std::nullopt;
 }
 
 GapCount FillGaps(int max_gap, std::vector<Vector3d>* track, std::vector<double>* weight) {
@@ -266,7 +249,7 @@ FilledTracks FillTracks(int max_gap, const std::vector<std::vector<Vector3d>*>& 
     if (!seen[t]) ++filled.interpolated_frames;
   }
   filled.excluded_frames = static_cast<int>(frames) - counting;
-  filled.many = Many(filled.interpolated_frames, counting);
+  filled.many = filled.interpolated_frames > kManyInterpolated * static_cast<double>(counting);
   if (!filled.many) return filled;
   const double share = static_cast<double>(counting - filled.interpolated_frames) / counting;
   for (size_t t = 0; t < frames; ++t) {
@@ -278,13 +261,13 @@ FilledTracks FillTracks(int max_gap, const std::vector<std::vector<Vector3d>*>& 
 std::string FilledTracks::Warning(double max_gap_s) const {
   if (gaps == 0) return "";
   const std::string frames = std::to_string(weight.size());
-  std::string text = "has " + CountText(gaps, "gap") + " in hip and ankles; those of up to " +
-                     Rounded(max_gap_s) + " s are interpolated, " +
-                     std::to_string(excluded_frames) + " of " + frames + " frames are left out";
+  std::string text = StrCat("has ", CountText(gaps, "gap"), " in hip and ankles; those of up to ",
+                            Rounded(max_gap_s), " s are interpolated, ", excluded_frames, " of ",
+                            frames, " frames are left out");
   if (many) {
-    text += "; " + std::to_string(interpolated_frames) +
-            " of the others are interpolated, more than a tenth: these count "
-            "less; fill the gaps from other markers, or leave the recording out";
+    text += StrCat("; ", interpolated_frames,
+                   " of the others are interpolated, more than a tenth: these count "
+                   "less; fill the gaps from other markers, or leave the recording out");
   }
   return text;
 }
@@ -314,9 +297,9 @@ int ResampledFrames(int frames, double from_hz, double to_hz) {
   return static_cast<int>(std::floor((frames - 1) * to_hz / from_hz + kRounding)) + 1;
 }
 
-std::vector<Position> ResampleTrack(const std::vector<Position>& track, double from_hz,
+std::vector<Vector3d> ResampleTrack(const std::vector<Vector3d>& track, double from_hz,
                                     double to_hz) {
-  std::vector<Position> result;
+  std::vector<Vector3d> result;
   for (int i = 0; i < ResampledFrames(static_cast<int>(track.size()), from_hz, to_hz); ++i) {
     result.push_back(ValueBetween(track, OldFrame(i, from_hz, to_hz)));
   }
@@ -362,8 +345,8 @@ Push ResamplePush(const Push& push, double from_hz, double to_hz) {
 
 namespace {
 
-Error Of(const std::string& id, const std::string& what) {
-  return Error{"recording " + Quoted(id) + ": " + what};
+[[noreturn]] void FailOf(const std::string& id, const std::string& what) {
+  throw Error{"recording " + Quoted(id) + ": " + what};
 }
 
 template <typename Rows>
@@ -371,153 +354,140 @@ void AddRows(const Rows& rows, ContentHash* hash) {
   for (const auto& row : rows) hash->Add(row.data(), row.size());
 }
 
-Result<RecordedPerson> PersonFrom(TrackedPerson tracks, int max_gap, const std::string& id,
-                                  FilledTracks* filled) {
-  if (!(tracks.mass_kg > 0.0 && tracks.mass_kg <= kHeaviestPerson)) {
-    return Of(id, "the mass of " + Quoted(tracks.id) + " is " + Rounded(tracks.mass_kg) +
-                      " kg; it must be above 0 and at most " + Rounded(kHeaviestPerson));
+// Fills gaps and checks the person of a recording called `id`.
+void CompletePerson(int max_gap, const std::string& id, RecordedPerson* person,
+                    FilledTracks* filled) {
+  const std::string who = Quoted(person->subject_id);
+  if (!(person->mass_kg > 0.0 && person->mass_kg <= kHeaviestPerson)) {
+    FailOf(id, "the mass of " + who + " is " + Rounded(person->mass_kg) +
+                   " kg; it must be above 0 and at most " + Rounded(kHeaviestPerson));
   }
-  const size_t frames = tracks.hip.size();
-  if (tracks.left_ankle.size() != frames || tracks.right_ankle.size() != frames) {
-    return Of(id, "hip and ankles of " + Quoted(tracks.id) + " have " + std::to_string(frames) +
-                      ", " + std::to_string(tracks.left_ankle.size()) + " and " +
-                      std::to_string(tracks.right_ankle.size()) + " frames; they share them");
+  const size_t frames = person->hip.size();
+  if (person->left_ankle.size() != frames || person->right_ankle.size() != frames) {
+    FailOf(id, StrCat("hip and ankles of ", who, " have ", frames, ", ", person->left_ankle.size(),
+                      " and ", person->right_ankle.size(), " frames; they share them"));
   }
-  RecordedPerson person;
-  person.subject_id = tracks.id;
-  person.mass_kg = tracks.mass_kg;
-  *filled = FillTracks(max_gap, {&tracks.hip, &tracks.left_ankle, &tracks.right_ankle});
+  *filled = FillTracks(max_gap, {&person->hip, &person->left_ankle, &person->right_ankle});
   if (frames > 0 && filled->weight[0] == 0.0) {
-    return Of(id, "at frame 0, where the fit starts, hip or ankles of " + Quoted(tracks.id) +
-                      " are missing; leave out the frames before they are visible");
+    FailOf(id, "at frame 0, where the fit starts, hip or ankles of " + who +
+                   " are missing; leave out the frames before they are visible");
   }
-  person.plates = std::move(tracks.plates);
-  person.hip = std::move(tracks.hip);
-  person.left_ankle = std::move(tracks.left_ankle);
-  person.right_ankle = std::move(tracks.right_ankle);
-  if (!filled->AllCount()) person.weight = filled->weight;
-  if (MaybeError wrong = CheckMotion(person, 1.0)) {
-    return Of(id, tracks.id + ": " + wrong->message);
+  if (!filled->AllCount()) person->weight = filled->weight;
+  if (MaybeError wrong = CheckMotion(*person, 1.0)) {
+    FailOf(id, person->subject_id + ": " + wrong->message);
   }
-  return person;
 }
 
-MaybeError CheckPush(const TrackedRecording& tracks, const Push& push, int frames) {
-  const int people = static_cast<int>(tracks.people.size());
+void CheckPush(const Recording& recording, const Push& push) {
+  const int people = static_cast<int>(recording.people.size()), frames = recording.num_frames();
   if (push.person < 0 || push.person >= people) {
-    return Of(tracks.id, "there is no person " + std::to_string(push.person) + " to push; it has " +
-                             std::to_string(people) + ", counted from 0");
+    FailOf(recording.id, StrCat("there is no person ", push.person, " to push; it has ", people,
+                                ", counted from 0"));
   }
   const int rows = static_cast<int>(push.force.size());
   if (push.start_frame < 0 || rows == 0 || push.start_frame > frames - 2 ||
       push.start_frame + rows > frames) {
-    return Of(tracks.id, "a push of " + std::to_string(rows) + " rows from frame " +
-                             std::to_string(push.start_frame) + " is not within its " +
-                             std::to_string(frames) + " frames");
+    FailOf(recording.id, StrCat("a push of ", rows, " rows from frame ", push.start_frame,
+                                " is not within its ", frames, " frames"));
   }
   for (const Eigen::Vector4d& row : push.force) {
-    if (!row.allFinite()) return Of(tracks.id, "the push has a value that is not finite");
+    if (!row.allFinite()) FailOf(recording.id, "the push has a value that is not finite");
   }
-  return std::nullopt;
 }
 
-// Ground and platforms share the motion's frames.
-MaybeError TakeLaboratory(std::vector<GroundPose> ground, const PreparationOptions& preparation,
-                          Recording* recording, ContentHash* hash) {
+// Checks ground and platforms, which share the motion's frames, and turns ground to count from
+// frame 0.
+void CompleteLaboratory(const PreparationOptions& preparation, Recording* recording,
+                        ContentHash* hash) {
   const auto frames = static_cast<size_t>(recording->num_frames());
-  const auto differ = [&](const std::string& what, size_t rows) {
-    return Of(recording->id, what + " has " + std::to_string(rows) + " rows, the motion " +
-                                 std::to_string(frames) + " frames; they share them");
+  const auto check_frames = [&](const std::string& what, size_t rows) {
+    if (rows == frames) return;
+    FailOf(recording->id,
+           StrCat(what, " has ", rows, " rows, the motion ", frames, " frames; they share them"));
   };
+  std::vector<GroundPose>& ground = recording->ground;
   bool any = !ground.empty();
-  if (any && ground.size() != frames) return differ("ground", ground.size());
+  if (any) check_frames("ground", ground.size());
   AddRows(ground, hash);
+  const GroundPose first = any ? ground[0] : GroundPose(GroundPose::Zero());
   for (GroundPose& pose : ground) {
-    if (!pose.allFinite()) return Of(recording->id, "ground has a value that is not finite");
+    if (!pose.allFinite()) FailOf(recording->id, "ground has a value that is not finite");
+    pose -= first;
   }
-  const GroundPose first = ground.empty() ? GroundPose(GroundPose::Zero()) : ground[0];
-  for (GroundPose& pose : ground) pose -= first;
   const auto some = static_cast<size_t>(std::max(5.0, 1.0 + std::round(0.1 * recording->fps)));
   const double speed = GroundSpeedAtFirst(
       {ground.begin(), ground.begin() + static_cast<std::ptrdiff_t>(std::min(some, ground.size()))},
       1.0 / recording->fps);
   if (speed > kGroundAtRest) {
-    return Of(recording->id, "the ground moves by " + Rounded(speed, 2) +
-                                 " per second (m or rad) at frame 0, where people are taken to be "
-                                 "at rest; start the recording earlier");
+    FailOf(recording->id, "the ground moves by " + Rounded(speed, 2) +
+                              " per second (m or rad) at frame 0, where people are taken to be "
+                              "at rest; start the recording earlier");
   }
-  recording->ground = std::move(ground);
   for (size_t n = 0; n < recording->people.size(); ++n) {
     const std::vector<PlateSample>& plates = recording->people[n].plates;
     if (plates.empty()) continue;
     any = true;
     const std::string whose = "plates of " + Quoted(recording->people[n].subject_id);
-    if (plates.size() != frames) return differ(whose, plates.size());
+    check_frames(whose, plates.size());
     for (const PlateSample& sample : plates) {
       if (!sample.force.allFinite() || !sample.centre.allFinite()) {
-        return Of(recording->id, whose + " have a value that is not finite");
+        FailOf(recording->id, whose + " have a value that is not finite");
       }
       hash->Add(sample.force.data(), 3);
       hash->Add(sample.centre.data(), 3);
     }
-    if (MaybeError wrong = CheckPlates("", *recording, static_cast<int>(n))) {
-      return Of(recording->id, wrong->message);
-    }
+    const MaybeError wrong = Caught([&] { CheckPlates("", *recording, static_cast<int>(n)); });
+    if (wrong) FailOf(recording->id, wrong->message);
   }
   if (any && preparation.resample_fps > 0.0) {
-    return Of(recording->id,
-              "ground and plates are taken at the motion's frames; leave resampling out");
+    FailOf(recording->id,
+           "ground and plates are taken at the motion's frames; leave resampling out");
   }
-  return std::nullopt;
 }
 
 }  // namespace
 
-Result<Recording> RecordingFromTracks(TrackedRecording tracks,
-                                      const PreparationOptions& preparation, Warnings* warnings) {
-  const std::string rate = FrameRateProblem(tracks.fps);
-  if (!rate.empty()) return Of(tracks.id, "fps " + rate);
-  if (tracks.people.empty()) return Of(tracks.id, "it contains no people");
-  Recording recording;
-  recording.id = tracks.id;
-  recording.fps = tracks.fps;
-  recording.labels = std::move(tracks.labels);
-  if (recording.labels.setting().empty()) recording.labels.Set(kSettingLabel, "single");
-  recording.pushed_person = tracks.pushed_person;
-  recording.push_kind = tracks.push_kind;
-  recording.initial_velocity = tracks.initial_velocity;
-  ContentHash hash;
-  const int max_gap = static_cast<int>(std::floor(preparation.max_gap_s * tracks.fps + 1e-9));
-  for (TrackedPerson& one : tracks.people) {
-    for (const auto* track : {&one.hip, &one.left_ankle, &one.right_ankle}) AddRows(*track, &hash);
-    const std::string who = one.id;
-    FilledTracks filled;
-    Result<RecordedPerson> person = PersonFrom(std::move(one), max_gap, tracks.id, &filled);
-    if (!person.ok()) return person.error();
-    const std::string gaps = filled.Warning(preparation.max_gap_s);
-    if (!gaps.empty() && warnings != nullptr) {
-      warnings->emplace_back("recording " + Quoted(tracks.id) + ": " + who + " " + gaps, tracks.id,
-                             "a person " + gaps);
+Result<Recording> RecordingFromTracks(Recording tracks, const PreparationOptions& preparation,
+                                      Warnings* warnings) {
+  return Caught([&] {
+    const std::string& id = tracks.id;
+    const std::string rate = FrameRateProblem(tracks.fps);
+    if (!rate.empty()) FailOf(id, "fps " + rate);
+    if (tracks.people.empty()) FailOf(id, "it contains no people");
+    if (tracks.labels.setting().empty()) tracks.labels.Set(kSettingLabel, "single");
+    ContentHash hash;
+    const int max_gap = static_cast<int>(std::floor(preparation.max_gap_s * tracks.fps + 1e-9));
+    for (RecordedPerson& person : tracks.people) {
+      for (const auto* track : {&person.hip, &person.left_ankle, &person.right_ankle}) {
+        AddRows(*track, &hash);
+      }
+      FilledTracks filled;
+      CompletePerson(max_gap, id, &person, &filled);
+      const std::string gaps = filled.Warning(preparation.max_gap_s);
+      if (!gaps.empty()) {
+        WarnOf(id, person.subject_id + " " + gaps, warnings, "a person " + gaps);
+      }
+      if (person.hip.size() != tracks.people[0].hip.size()) {
+        FailOf(id, "its people have different numbers of frames");
+      }
     }
-    recording.people.push_back(std::move(person.value()));
-    if (recording.people.back().hip.size() != recording.people[0].hip.size()) {
-      return Of(tracks.id, "its people have different numbers of frames");
+    for (const Push& push : tracks.pushes) {
+      CheckPush(tracks, push);
+      AddRows(push.force, &hash);
     }
-  }
-  for (const Push& push : tracks.pushes) {
-    if (MaybeError wrong = CheckPush(tracks, push, recording.num_frames())) return *wrong;
-    AddRows(push.force, &hash);
-  }
-  if (MaybeError wrong = TakeLaboratory(std::move(tracks.ground), preparation, &recording, &hash)) {
-    return *std::move(wrong);
-  }
-  recording.pushes = std::move(tracks.pushes);
-  recording.content_hash = hash.Hex();
-  if (MaybeError failed = CheckPreparation(preparation)) return *failed;
-  if (MaybeError failed = PrepareMotion(preparation, &recording)) {
-    return Of(recording.id, failed->message);
-  }
-  return recording;
+    CompleteLaboratory(preparation, &tracks, &hash);
+    tracks.content_hash = hash.Hex();
+    OrThrow(CheckPreparation(preparation));
+    if (MaybeError failed = PrepareMotion(preparation, &tracks)) FailOf(id, failed->message);
+    return std::move(tracks);
+  });
+}
+
+void WarnOf(const std::string& id, const std::string& what, Warnings* warnings,
+            const std::string& of_many) {
+  if (warnings == nullptr) return;
+  warnings->emplace_back("recording " + Quoted(id) + ": " + what, id,
+                         of_many.empty() ? what : of_many);
 }
 
 double HeightFraction(const Body& body, const Vector4<double>& q, double height) {
@@ -540,18 +510,6 @@ std::vector<Eigen::Vector4d> PushAtHeight(const RecordedPerson& person, int star
     rows.push_back(GeneralizedForce<double>(body, pose(start + t).q, forces[t], fraction));
   }
   return rows;
-}
-
-MaybeError CheckLasts(const RecordTimes& times, const std::string& file, int line) {
-  const double frame = 1.0 / times.fps, end_s = times.start_s + times.seconds;
-  const bool begins = times.first_s <= times.start_s + 0.5 * frame;
-  if (begins && times.last_s >= end_s - times.spare * frame) return {};
-  return Error{std::string(times.lasts) + " from " + Rounded(times.first_s, 4) + " to " +
-                   Rounded(times.last_s, 4) + " s, but the motion from " +
-                   Rounded(times.start_s, 4) + " to " + Rounded(end_s, 4) +
-                   " s of that clock; record it longer, cut the motion (end_frame), or give the "
-                   "right clock at frame 0 as \"start\"",
-               file, line};
 }
 
 Eigen::Vector3d ValueBetween(const std::vector<Eigen::Vector3d>& track, double at) {

@@ -1,9 +1,6 @@
-// datasets: tracks of positions: what is done to a motion between the file and the fit (gaps,
-// low-pass, frame rate), whether it can be a person at all, and a recording straight from tracks in
-// memory, with the checks of one from files:
-//
-//   TrackedPerson anna{"anna", 62.0, hip, left_ankle, right_ankle};
-//   Result<Recording> recording = RecordingFromTracks({"trial 1", 100.0, {anna}, {push}});
+// datasets: tracks of positions: gaps, low-pass and frame rate of a motion between the file and the
+// fit, whether it can be a person at all, and a recording straight from tracks in memory, with the
+// checks of one from files.
 #pragma once
 
 #include <Eigen/Core>
@@ -106,36 +103,21 @@ std::vector<double> ResampleWeights(const std::vector<double>& weight, double fr
 // Rows are means over their frame, and so are the new ones: the impulse stays.
 Push ResamplePush(const Push& push, double from_hz, double to_hz);
 
-// One per frame, m, z up and x forward; NaN where it was not seen.
-struct TrackedPerson {
-  std::string id;
-  double mass_kg = 0.0;
-  std::vector<Eigen::Vector3d> hip, left_ankle, right_ankle;
-  std::vector<PlateSample> plates{};  // one per frame; empty: nothing measured
-};
-
-struct TrackedRecording {
-  std::string id;
-  double fps = 0.0;
-  std::vector<TrackedPerson> people;
-  std::vector<Push> pushes;
-  int pushed_person = 0;
-  PushKind push_kind = PushKind::kExternal;
-  InitialVelocity initial_velocity = InitialVelocity::kZero;
-  RecordingLabels labels;
-  std::vector<GroundPose> ground{};  // one per frame, from rest; empty: it does not move
-};
-
-// Gaps are filled as those of files are, and the motion filtered and resampled; what looks unusual
-// but can be lived with is appended to `warnings`. Errors: a mass not
-// in (0, 400] kg, a rate not in [1, 10000], people with different numbers of frames or fewer than
-// three, a first frame that is not seen, what CheckMotion says, pushes on nobody or beyond the
-// motion; ground or platforms with other frames than the motion, with numbers that are not finite,
-// or together with another rate; ground that moves at frame 0, and platforms that do not measure
-// the person's weight.
-Result<Recording> RecordingFromTracks(TrackedRecording tracks,
-                                      const PreparationOptions& preparation = {},
+// A recording of tracks in memory, NaN where something was not seen, whose ground counts from
+// anywhere. Gaps are filled as those of files are, and the motion filtered and resampled; unusual
+// things that are no error are appended to `warnings`. Errors: a mass not in (0, 400] kg, a rate
+// not in [1, 10000], people with different numbers of frames or fewer than three, a first frame
+// that is not seen, those of CheckMotion, pushes on nobody or beyond the motion; ground or
+// platforms with other frames than the motion, with numbers that are not finite, or together with
+// another rate; ground that moves at frame 0, and platforms that do not measure the person's
+// weight.
+Result<Recording> RecordingFromTracks(Recording tracks, const PreparationOptions& preparation = {},
                                       Warnings* warnings = nullptr);
+
+// Appends "recording 'id': what"; of_many: the sentence about several, unless it is `what` too.
+// warnings: null where nobody reads them.
+void WarnOf(const std::string& id, const std::string& what, Warnings* warnings,
+            const std::string& of_many = "");
 
 // The height of a push: a fraction of the way from the ankles to the hip, or metres above the
 // ground at its first frame.
@@ -151,14 +133,6 @@ double HeightFraction(const Body& body, const Vector4<double>& q, double height)
 std::vector<Eigen::Vector4d> PushAtHeight(const RecordedPerson& person, int start,
                                           const std::vector<Eigen::Vector3d>& forces,
                                           const PushHeight& height);
-
-// Checks that a record, "the record of the ground lasts", goes on for as long as a motion of so
-// many seconds that begins at `start_s` of its clock. spare: frames that may be missing at the end.
-struct RecordTimes {
-  const char* lasts;
-  double first_s, last_s, start_s, seconds, fps, spare;
-};
-MaybeError CheckLasts(const RecordTimes& times, const std::string& file, int line);
 
 // Values at even times: cubic through the four nearest samples (Lagrange; of fewer, through all).
 // at: in samples, from 0.

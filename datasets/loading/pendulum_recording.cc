@@ -8,6 +8,7 @@
 #include <set>
 
 #include "datasets/files/input_file.h"
+#include "datasets/manifest/joint_mapping.h"
 #include "models/restoration/body.h"
 #include "models/standing.h"
 #include "models/turn.h"
@@ -52,8 +53,9 @@ double FacingBeforePush(const Recording& recording) {
   Eigen::Vector2d to_the_left = Eigen::Vector2d::Zero();
   for (const RecordedPerson& person : recording.people) {
     Eigen::Vector3d own = Eigen::Vector3d::Zero();
-    for (int t = 0; t < std::max(1, frames); ++t)
+    for (int t = 0; t < std::max(1, frames); ++t) {
       own += person.left_ankle[t] - person.right_ankle[t];
+    }
     if (own.head<2>().norm() > 0.0) to_the_left += own.head<2>().normalized();
   }
   return to_the_left.norm() > 0.0 ? std::atan2(-to_the_left.x(), to_the_left.y()) : 0.0;
@@ -65,18 +67,23 @@ RecordedPerson SeenFromGround(const Recording& recording, RecordedPerson person)
   const std::vector<GroundPose>& poses = recording.ground;
   if (poses.empty()) return person;
   const Vector3<double> origin = 0.5 * (person.left_ankle[0] + person.right_ankle[0]);
-  for (auto* track : {&person.hip, &person.left_ankle, &person.right_ankle, &person.left_toe,
-                      &person.right_toe, &person.left_heel, &person.right_heel}) {
-    for (size_t t = 0; t < track->size(); ++t) {
-      (*track)[t] = OnGround(poses[std::min(t, poses.size() - 1)], origin, (*track)[t]);
+  for (const PendulumTrack& row : kPendulumTracks) {
+    std::vector<Eigen::Vector3d>& track = person.*row.track;
+    for (size_t t = 0; t < track.size(); ++t) {
+      track[t] = OnGround(poses[std::min(t, poses.size() - 1)], origin, track[t]);
     }
   }
   return person;
 }
 
-// The first frame at which ground may move: it is seen to have left its place later, and
-// accelerates most before that. As far back from there as from there to half of its way.
-int FirstAcceleration(const std::vector<GroundPose>& poses) {
+// The first frame at which anything happens: a push, or ground that may move. Ground is seen to
+// have left its place later, and accelerates most before that: as far back from there as from there
+// to half of its way.
+size_t FirstDisturbance(const Recording& recording) {
+  int first = recording.num_frames();
+  for (const Push& push : recording.pushes) first = std::min(first, push.start_frame);
+  const std::vector<GroundPose>& poses = recording.ground;
+  if (poses.empty()) return first;
   const int left = FirstMotion(poses);
   double farthest = 0.0;
   for (const GroundPose& pose : poses) farthest = std::max(farthest, (pose - poses[0]).norm());
@@ -85,17 +92,7 @@ int FirstAcceleration(const std::vector<GroundPose>& poses) {
          (poses[half] - poses[0]).norm() < 0.5 * farthest) {
     ++half;
   }
-  return std::max(0, left - (half - left));
-}
-
-// The first frame at which anything happens: a push, or ground that leaves its place.
-size_t FirstDisturbance(const Recording& recording) {
-  size_t first = static_cast<size_t>(recording.num_frames());
-  for (const Push& push : recording.pushes) {
-    first = std::min(first, static_cast<size_t>(push.start_frame));
-  }
-  if (recording.ground.empty()) return first;
-  return std::min(first, static_cast<size_t>(FirstAcceleration(recording.ground)));
+  return std::min(first, std::max(0, left - (half - left)));
 }
 
 // The mean centre of pressure over the frames before `end`; none: nobody pressed.

@@ -64,78 +64,58 @@ std::vector<int> AllCalled(const Source& source, const std::string& simplified) 
 Error SeveralError(const Source& source, const std::string& key, const std::vector<int>& found) {
   const std::string &one = source.names[found[0]], &other = source.names[found[1]];
   return {key + " could be " + Quoted(one) + " or " + Quoted(other) +
-              (one == other ? "; give its index, " + std::to_string(found[0]) + " or " +
-                                  std::to_string(found[1]) + ","
+              (one == other ? StrCat("; give its index, ", found[0], " or ", found[1], ",")
                             : "; name it in full") +
               " by \"joints\" in the manifest (each subject may have its own)",
           source.path};
 }
 
-// The first set of candidates that are all there; an empty list when there is none. Points of
-// several people that match the same name are an Error, joints are taken in file order.
-Result<std::vector<int>> FindDefault(const Source& source, const std::string& key,
-                                     const std::vector<std::vector<std::string>>& candidates) {
-  for (const std::vector<std::string>& set : candidates) {
+// The first of the sets "a+b|c" whose names are all there; an empty list when there is none. `$`
+// stands for the side and `@` for its letter. Points of several people that match one name are an
+// Error, joints are taken in file order.
+std::vector<int> FindDefault(const Source& source, const std::string& key, const std::string& side,
+                             const std::string& sets) {
+  for (const std::string& set : SplitList(sets, '|')) {
     std::vector<int> chosen;
-    for (const std::string& name : set) {
+    const std::vector<std::string> names = SplitList(set, '+');
+    for (const std::string& pattern : names) {
+      std::string name;
+      for (char c : pattern) {
+        name += c == '$' ? side : c == '@' ? side.substr(0, 1) : std::string(1, c);
+      }
       const std::vector<int> found = AllCalled(source, name);
       if (found.empty()) break;
-      if (found.size() > 1 && !source.is_bvh()) return SeveralError(source, key, found);
+      if (found.size() > 1 && !source.is_bvh()) throw SeveralError(source, key, found);
       chosen.push_back(found[0]);
     }
-    if (chosen.size() == set.size()) return chosen;
+    if (chosen.size() == names.size()) return chosen;
   }
-  return std::vector<int>{};
+  return {};
 }
 
-Result<std::vector<int>> DefaultHip(const Source& source) {
-  std::vector<std::vector<std::string>> candidates = {{"hips"}, {"hip"}, {"pelvis"}};
+std::vector<int> DefaultHip(const Source& source) {
+  std::string sets = "hips|hip|pelvis";
   if (!source.is_bvh()) {
-    for (const auto& set :
-         std::vector<std::vector<std::string>>{{"midhip"},
-                                               {"hipcenter"},
-                                               {"lasi", "rasi", "lpsi", "rpsi"},
-                                               {"lasis", "rasis", "lpsis", "rpsis"},
-                                               {"asisl", "asisr", "psisl", "psisr"},
-                                               {"lasi", "rasi", "sacr"},
-                                               {"lasis", "rasis", "vsacral"},
-                                               {"lasi", "rasi"},
-                                               {"lasis", "rasis"},
-                                               {"lhip", "rhip"},
-                                               {"lefthip", "righthip"}}) {
-      candidates.push_back(set);
-    }
+    sets +=
+        "|midhip|hipcenter|lasi+rasi+lpsi+rpsi|lasis+rasis+lpsis+rpsis|asisl+asisr+psisl+psisr|"
+        "lasi+rasi+sacr|lasis+rasis+vsacral|lasi+rasi|lasis+rasis|lhip+rhip|lefthip+righthip";
   }
-  Result<std::vector<int>> hip = FindDefault(source, "hip", candidates);
-  if (hip.ok() && hip.value().empty() && source.is_bvh()) return std::vector<int>{0};
-  return hip;
+  const std::vector<int> hip = FindDefault(source, RoleName(kBodyHip), "", sets);
+  return hip.empty() && source.is_bvh() ? std::vector<int>{0} : hip;
 }
 
-Result<std::vector<int>> DefaultAnkle(const Source& source, const std::string& key,
-                                      const std::string& side) {
-  const std::string letter = side.substr(0, 1);
-  std::vector<std::vector<std::string>> candidates;
-  for (const char* part : {"ankle", "foot"}) {
-    for (const std::string& name : NamesOnSide(side, part)) candidates.push_back({name});
-  }
+std::vector<int> DefaultAnkle(const Source& source, int role) {
+  std::string sets = "$ankle|@ankle|ankle$|ankle@|$foot|@foot|foot$|foot@";
   if (!source.is_bvh()) {
     // The middle of both malleoli, where there are both: ISB's L_FAL and L_TAM, LAL and LAM, ...
-    for (const auto& [outer, inner] :
-         {std::pair("fal", "tam"), std::pair("al", "am"), std::pair("latmal", "medmal"),
-          std::pair("lmal", "mmal"), std::pair("anklelat", "anklemed")}) {
-      candidates.push_back({letter + outer, letter + inner});
-    }
-    for (const std::string& name :
-         {letter + "ank", letter + "mall", letter + "fal", letter + "anklelat", letter + "mal",
-          letter + "lm", "mal" + letter, "malext" + letter}) {
-      candidates.push_back({name});
-    }
+    sets +=
+        "|@fal+@tam|@al+@am|@latmal+@medmal|@lmal+@mmal|@anklelat+@anklemed|"
+        "@ank|@mall|@fal|@anklelat|@mal|@lm|mal@|malext@";
   }
-  Result<std::vector<int>> ankle = FindDefault(source, key, candidates);
-  if (ankle.ok() && ankle.value().empty() && source.is_bvh() && IsFzjSkeleton(*source.skeleton)) {
-    return std::vector<int>{side == "left" ? kLeftAnkle : kRightAnkle};
-  }
-  return ankle;
+  const std::string side = role == kLeftAnkle ? "left" : "right";
+  const std::vector<int> ankle = FindDefault(source, RoleName(role), side, sets);
+  const bool fzj = source.is_bvh() && IsFzjSkeleton(*source.skeleton);
+  return ankle.empty() && fzj ? std::vector<int>{role} : ankle;
 }
 
 // Another point of the foot that `ankle` belongs to; empty where there is none that is clear.
@@ -164,163 +144,118 @@ std::vector<int> ToeOf(const Source& source, const std::string& side, const Pend
                 {"toebase", "toe", "toes", "bigtoe", "toetip", "mt2", "mt1", "mt5", "foot"});
 }
 
-std::vector<int> HeelOf(const Source& source, const std::string& side, const PendulumJoints& joints,
-                        const std::vector<int>& ankle) {
-  return OfFoot(source, side, joints, ankle, {"heel", "hee", "cal", "calc"});
-}
-
-Error InJoints(const std::string& key, Error error) {
-  error.message = "joints: " + key + ": " + error.message;
-  return error;
-}
-
 // The joint or point that one name or index means.
-Result<int> Look(const Source& source, const std::string& key, const JointReference& reference) {
+int Look(const Source& source, const std::string& key, const JointReference& reference) {
   const int count = static_cast<int>(source.names.size());
+  const std::string noun = source.noun();
   if (reference.name.empty()) {
     if (reference.index >= 0 && reference.index < count) return reference.index;
-    const std::string noun = source.noun();
-    return Error{"joints: " + key + " is " + noun + " " + std::to_string(reference.index) +
-                     ", but the " + source.whole() + " has " + noun + "s 0 to " +
-                     std::to_string(count - 1),
-                 source.path, 0};
+    throw Error{StrCat("joints: ", key, " is ", noun, " ", reference.index, ", but the ",
+                       source.whole(), " has ", noun, "s 0 to ", count - 1),
+                source.path};
   }
+  std::vector<int> found;  // "LASI" for "Anna:LASI"
   for (int i = 0; i < count; ++i) {
-    if (source.names[i] == reference.name) return i;
-  }
-  // "LASI" for "Anna:LASI".
-  std::vector<int> found;
-  for (int i = 0; i < count && !source.is_bvh(); ++i) {
-    const std::size_t prefix = source.names[i].rfind(':');
-    if (prefix != std::string::npos && source.names[i].substr(prefix + 1) == reference.name) {
+    const std::string& name = source.names[i];
+    if (name == reference.name) return i;
+    const std::size_t prefix = name.rfind(':');
+    if (!source.is_bvh() && prefix != std::string::npos &&
+        name.substr(prefix + 1) == reference.name) {
       found.push_back(i);
     }
   }
-  if (found.size() > 1) return InJoints(key, SeveralError(source, key, found));
   if (found.size() == 1) return found[0];
-  return InJoints(key, UnknownNameError(source.path, source.noun(), source.names, reference.name));
+  Error error = found.empty() ? UnknownNameError(source.path, noun, source.names, reference.name)
+                              : SeveralError(source, key, found);
+  error.message = "joints: " + key + ": " + error.message;
+  throw error;
 }
 
-Result<std::vector<int>> Meant(const Source& source, const std::string& key,
-                               const JointReference& reference) {
+std::vector<int> Meant(const Source& source, const std::string& key,
+                       const JointReference& reference) {
+  if (reference.mean_of.empty()) return {Look(source, key, reference)};
   std::vector<int> chosen;
-  const std::vector<JointReference> single = {reference};
-  for (const JointReference& one : reference.mean_of.empty() ? single : reference.mean_of) {
-    const Result<int> index = Look(source, key, one);
-    if (!index.ok()) return index.error();
-    chosen.push_back(index.value());
-  }
+  for (const JointReference& one : reference.mean_of) chosen.push_back(Look(source, key, one));
   return chosen;
 }
 
 // The joints of `reference`, otherwise the role's default, which is only looked for where it is
-// wanted, as it may be ambiguous. Error: neither is there.
-Result<std::vector<int>> Choose(const Source& source, int role,
-                                const std::optional<JointReference>& reference) {
+// wanted, as it may be ambiguous. Throws an Error: neither is there.
+std::vector<int> Choose(const Source& source, int role,
+                        const std::optional<JointReference>& reference) {
   const std::string& key = RoleName(role);
   if (reference) return Meant(source, key, *reference);
-  const Result<std::vector<int>> found =
-      role == kBodyHip ? DefaultHip(source)
-                       : DefaultAnkle(source, key, role == kLeftAnkle ? "left" : "right");
-  if (!found.ok() || !found.value().empty()) return found;
+  const std::vector<int> found = role == kBodyHip ? DefaultHip(source) : DefaultAnkle(source, role);
+  if (!found.empty()) return found;
   const std::string noun = source.noun();
-  return Error{"no " + noun + " could be recognised as " + key +
-                   "; name it in the manifest: \"joints\": {\"hip\": ..., \"left_ankle\": ..., "
-                   "\"right_ankle\": ...}; the " +
-                   source.whole() + " has " + ListOfNames(source.names, kNamesInErrors, noun + "s"),
-               source.path};
+  throw Error{"no " + noun + " could be recognised as " + key +
+                  "; name it in the manifest: \"joints\": {\"hip\": ..., \"left_ankle\": ..., "
+                  "\"right_ankle\": ...}; the " +
+                  source.whole() + " has " + ListOfNames(source.names, kNamesInErrors, noun + "s"),
+              source.path};
 }
 
-Result<PendulumJoints> ChooseFrom(Source source, const JointMapping& mapping) {
+PendulumJoints ChooseFrom(Source source, const JointMapping& mapping) {
   for (const std::string& name : source.names) source.simplified.push_back(SimplifiedName(name));
-  const struct {
-    int role;
-    std::vector<int> PendulumJoints::*place;
-  } required[] = {{kBodyHip, &PendulumJoints::hip},
-                  {kLeftAnkle, &PendulumJoints::left_ankle},
-                  {kRightAnkle, &PendulumJoints::right_ankle}};
   PendulumJoints joints;
-  for (const auto& [role, place] : required) {
-    Result<std::vector<int>> chosen = Choose(source, role, mapping.Of(role));
-    if (!chosen.ok()) return chosen.error();
-    joints.*place = std::move(chosen.value());
-  }
+  joints.hip = Choose(source, kBodyHip, mapping.Of(kBodyHip));
+  joints.left_ankle = Choose(source, kLeftAnkle, mapping.Of(kLeftAnkle));
+  joints.right_ankle = Choose(source, kRightAnkle, mapping.Of(kRightAnkle));
   if (joints.hip == joints.left_ankle || joints.hip == joints.right_ankle ||
       (joints.left_ankle == joints.right_ankle && mapping.others.count(kBaseRole) == 0)) {
-    return Error{"hip, left_ankle and right_ankle must be three different " + source.noun() +
-                     "s, not " + Quoted(source.names[joints.hip[0]]) + ", " +
-                     Quoted(source.names[joints.left_ankle[0]]) + " and " +
-                     Quoted(source.names[joints.right_ankle[0]]) +
-                     "; name them by \"joints\" in the manifest",
-                 source.path, 0};
+    throw Error{"hip, left_ankle and right_ankle must be three different " + source.noun() +
+                    "s, not " + Quoted(source.names[joints.hip[0]]) + ", " +
+                    Quoted(source.names[joints.left_ankle[0]]) + " and " +
+                    Quoted(source.names[joints.right_ankle[0]]) +
+                    "; name them by \"joints\" in the manifest",
+                source.path};
   }
   for (const bool is_left : {true, false}) {
+    const std::string side = is_left ? "left" : "right";
+    const std::vector<int>& ankle = is_left ? joints.left_ankle : joints.right_ankle;
     const int role = is_left ? kLeftToe : kRightToe;
-    std::vector<int>& toe = is_left ? joints.left_toe : joints.right_toe;
-    toe = ToeOf(source, is_left ? "left" : "right", joints,
-                is_left ? joints.left_ankle : joints.right_ankle);
     const std::optional<JointReference> named = mapping.Of(role);
-    if (!named) continue;
-    Result<std::vector<int>> meant = Meant(source, RoleName(role), *named);
-    if (!meant.ok()) return meant.error();
-    toe = std::move(meant.value());
+    (is_left ? joints.left_toe : joints.right_toe) =
+        named ? Meant(source, RoleName(role), *named) : ToeOf(source, side, joints, ankle);
+    (is_left ? joints.left_heel : joints.right_heel) =
+        OfFoot(source, side, joints, ankle, {"heel", "hee", "cal", "calc"});
   }
-  joints.left_heel = HeelOf(source, "left", joints, joints.left_ankle);
-  joints.right_heel = HeelOf(source, "right", joints, joints.right_ankle);
   return joints;
 }
 
-constexpr int kNamings = 4;
-
-// One word per role and naming, as SimplifiedName has it; '|' before the next best one, '+' between
-// those whose mean it is. Words of arms and legs are sought on both sides (NamesOnSide).
+// Words of a role in four namings, as SimplifiedName has them; '|' before the next best one, '+'
+// between those whose mean it is. Words of arms and legs are sought on both sides (NamesOnSide). A
+// word may mean two things, as Mixamo's LeftShoulder is a clavicle: hence whole namings, and not
+// word by word.
 struct RoleWords {
-  int role;  // on the right, where there are two
-  bool sided;
-  std::array<const char*, kNamings> words;
+  int role;             // on the right, where there are two
+  const char* joints;   // of FZJ, Xsens, SMPL, OpenSim
+  const char* limbs;    // CMU's BVH, Mixamo, Rokoko, segments of Xsens, Blender
+  const char* bones;    // bodies of OpenSim, CMU's ASF
+  const char* markers;  // Plug-in Gait and its joint centres, OpenSim
 };
 
-// Namings: joints (FZJ, Xsens, SMPL, OpenSim's joints); limbs (CMU's BVH, Mixamo, Rokoko, Xsens'
-// segments, Blender); bones (OpenSim's bodies, CMU's ASF); markers (Plug-in Gait and its joint
-// centres, OpenSim). A word may mean two things, as Mixamo's LeftShoulder is a clavicle: hence
-// whole namings, and not word by word.
 constexpr RoleWords kWords[] = {
-    {kLowerSpine, false, {"spine1|spine", "lowerback|l5|spine", "lowerback|lumbar", "l5"}},
-    {kMiddleSpine, false, {"spine2|spine1", "l3|spine|spine1", "upperback", "l3"}},
-    {kUpperSpine,
-     false,
-     {"spine3|spine2|chest|thorax|torso|back", "t8|chest|spine1|spine2", "thorax|torso",
-      "t10+strn|t10|t8|sternum|strn"}},
-    {kNeck,
-     false,
-     {"neck|neck1", "neck|neck1", "neck|lowerneck|cerv7", "c7+clav|c7|neck|c7spinous"}},
-    {kBodyHead,
-     false,
-     {"head", "head", "head|skull",
-      "lfhd+rfhd+lbhd+rbhd|lfhd+rfhd|lbhd+rbhd|tophead|vtex|vertex|head"}},
-    {kRightClavicle,
-     true,
-     {"clavicle|collar|sternoclavicular", "shoulder|collar|clavicle", "clavicle|scapula", ""}},
-    {kRightShoulder,
-     true,
-     {"shoulder|acromial|glenohumeral", "arm|upperarm|uparm", "humerus|upperarm",
-      "sjc|sho|acr|shoulder|acromium|acromion|shouldertop"}},
-    {kRightElbow,
-     true,
-     {"elbow", "forearm|lowerarm|lowarm", "ulna|radius|forearm",
-      "ejc|lel+mel|elblat+elbmed|elbowlat+elbowmed|elb+melb|elb|lel|elbow|elbowlat"}},
-    {kRightWrist,
-     true,
-     {"wrist|radiushand|hand", "hand|wrist", "hand|wrist",
-      "wjc|wra+wrb|wristlat+wristmed|faradius+faulna|wri|wrist|wristlat"}},
-    {kRightHip,
-     true,
-     {"hip|hipjoint", "upleg|upperleg|thigh", "femur|hipjoint", "hjc|hipjc|fep|hip"}},
-    {kRightKnee,
-     true,
-     {"knee|walkerknee", "leg|lowerleg|lowleg|shin|calf", "tibia",
-      "kjc|kneejc|feo|lfc+mfc|knelat+knemed|kneelat+kneemed|kne+mkne|kne|lfc|knee|kneelat"}},
+    {kLowerSpine, "spine1|spine", "lowerback|l5|spine", "lowerback|lumbar", "l5"},
+    {kMiddleSpine, "spine2|spine1", "l3|spine|spine1", "upperback", "l3"},
+    {kUpperSpine, "spine3|spine2|chest|thorax|torso|back", "t8|chest|spine1|spine2", "thorax|torso",
+     "t10+strn|t10|t8|sternum|strn"},
+    {kNeck, "neck|neck1", "neck|neck1", "neck|lowerneck|cerv7", "c7+clav|c7|neck|c7spinous"},
+    {kBodyHead, "head", "head", "head|skull",
+     "lfhd+rfhd+lbhd+rbhd|lfhd+rfhd|lbhd+rbhd|tophead|vtex|vertex|head"},
+    {kRightClavicle, "clavicle|collar|sternoclavicular", "shoulder|collar|clavicle",
+     "clavicle|scapula", ""},
+    {kRightShoulder, "shoulder|acromial|glenohumeral", "arm|upperarm|uparm", "humerus|upperarm",
+     "sjc|sho|acr|shoulder|acromium|acromion|shouldertop"},
+    {kRightElbow, "elbow", "forearm|lowerarm|lowarm", "ulna|radius|forearm",
+     "ejc|lel+mel|elblat+elbmed|elbowlat+elbowmed|elb+melb|elb|lel|elbow|elbowlat"},
+    {kRightWrist, "wrist|radiushand|hand", "hand|wrist", "hand|wrist",
+     "wjc|wra+wrb|wristlat+wristmed|faradius+faulna|wri|wrist|wristlat"},
+    {kRightHip, "hip|hipjoint", "upleg|upperleg|thigh", "femur|hipjoint", "hjc|hipjc|fep|hip"},
+    {kRightKnee, "knee|walkerknee", "leg|lowerleg|lowleg|shin|calf", "tibia",
+     "kjc|kneejc|feo|lfc+mfc|knelat+knemed|kneelat+kneemed|kne+mkne|kne|lfc|knee|kneelat"},
 };
+using Naming = const char* RoleWords::*;
 
 constexpr int kSpine[] = {kLowerSpine, kMiddleSpine, kUpperSpine};
 
@@ -338,15 +273,11 @@ class RoleFinder {
   }
 
   // Adds the roles that `roles` lacks and the naming has names for; a joint plays one role.
-  BodyRoles Named(int naming, BodyRoles roles) const {
+  BodyRoles Named(Naming naming, BodyRoles roles) const {
     for (const RoleWords& row : kWords) {
-      const char* words = row.words[naming];
-      if (row.sided) {
-        Fill(row.role, "right", words, &roles);
-        Fill(OnLeft(row.role), "left", words, &roles);
-      } else {
-        Fill(row.role, "", words, &roles);
-      }
+      const bool sided = row.role > kBodyHead;
+      Fill(row.role, sided ? "right" : "", row.*naming, &roles);
+      if (sided) Fill(OnLeft(row.role), "left", row.*naming, &roles);
     }
     return roles;
   }
@@ -452,13 +383,13 @@ std::string CommonPrefix(const std::vector<std::string>& names, const PendulumJo
 
 Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSkeleton& skeleton,
                                             const JointMapping& mapping) {
-  return ChooseFrom({path, skeleton.Names(), &skeleton}, mapping);
+  return Caught([&] { return ChooseFrom({path, skeleton.Names(), &skeleton}, mapping); });
 }
 
 Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
                                             const std::vector<std::string>& names,
                                             const JointMapping& mapping) {
-  return ChooseFrom({path, names}, mapping);
+  return Caught([&] { return ChooseFrom({path, names}, mapping); });
 }
 
 JointMapping Overlaid(const JointMapping& first, const JointMapping& second) {
@@ -473,14 +404,17 @@ JointMapping Overlaid(const JointMapping& first, const JointMapping& second) {
 Result<BodyRoles> ChooseRoles(const std::string& path, const std::vector<std::string>& names,
                               const BvhSkeleton* skeleton, const PendulumJoints& pendulum,
                               const JointMapping& mapping) {
-  BodyRoles given;
-  for (int role = 0; role < kBodyJoints; ++role) {
-    const std::optional<JointReference> reference = mapping.Of(role);
-    if (!reference) continue;
-    Result<std::vector<int>> meant = Meant({path, names, skeleton}, RoleName(role), *reference);
-    if (!meant.ok()) return meant.error();
-    given.joints[role] = std::move(meant.value());
-  }
+  const Result<BodyRoles> named = Caught([&] {
+    BodyRoles meant;
+    for (int role = 0; role < kBodyJoints; ++role) {
+      if (const auto reference = mapping.Of(role)) {
+        meant.joints[role] = Meant({path, names, skeleton}, RoleName(role), *reference);
+      }
+    }
+    return meant;
+  });
+  if (!named.ok()) return named;
+  const BodyRoles& given = named.value();
   BodyRoles roles = given;
   if (skeleton != nullptr && IsFzjSkeleton(*skeleton)) {
     for (int role = 0; role < kBodyJoints; ++role) {
@@ -495,9 +429,10 @@ Result<BodyRoles> ChooseRoles(const std::string& path, const std::vector<std::st
   roles.joints[kRightToe] = pendulum.right_toe;
   const RoleFinder finder(names, CommonPrefix(names, pendulum));
   BodyRoles best = roles;
-  for (int naming = 0; naming < kNamings; ++naming) {
-    BodyRoles named = finder.Named(naming, roles);
-    if (CountOf(named) > CountOf(best)) best = std::move(named);
+  for (Naming naming :
+       {&RoleWords::joints, &RoleWords::limbs, &RoleWords::bones, &RoleWords::markers}) {
+    BodyRoles by_naming = finder.Named(naming, roles);
+    if (CountOf(by_naming) > CountOf(best)) best = std::move(by_naming);
   }
   if (skeleton != nullptr) {
     SetSpine(*skeleton, &best);
@@ -531,15 +466,13 @@ void ReadColumns(JsonFields* fields, ColumnMapping* mapping) {
     return;
   }
   for (const auto& [name, item] : columns.items()) {
-    bool names = item.is_array() && item.size() == 3;
-    for (std::size_t i = 0; names && i < 3; ++i) names = item[i].is_string();
-    if (!names || name.empty()) {
+    const auto xyz = ListOf<std::string>(item);
+    if (!xyz || xyz->size() != 3 || name.empty()) {
       fields->Fail("columns",
                    "of " + Quoted(name) + " must be three column names, not " + Shown(item));
       return;
     }
-    mapping->columns.push_back(
-        {name, item[0].get<std::string>(), item[1].get<std::string>(), item[2].get<std::string>()});
+    mapping->columns.push_back({name, (*xyz)[0], (*xyz)[1], (*xyz)[2]});
   }
 }
 
@@ -585,33 +518,31 @@ std::optional<JointReference> ReadJoint(JsonFields* fields, const char* key) {
 }  // namespace
 
 Result<ColumnMapping> ReadColumnMapping(const std::string& path) {
-  const Result<JsonDocument> document = ReadJsonDocument(path);
-  if (!document.ok()) return document.error();
-  JsonFields fields(document.value(), document.value().content, "", "mapping");
-  ColumnMapping mapping;
-  if (fields.error()) return *fields.error();
-  ReadColumns(&fields, &mapping);
-  mapping.joints = ReadJointMapping(document.value(), &fields);
-  mapping.time_column = fields.OptionalText("time", "");
-  if (fields.Has("frame_rate")) {
-    mapping.frame_rate = fields.Number("frame_rate", "the frames per second");
+  return Caught([&] {
+    const JsonDocument document = OrThrow(ReadJsonDocument(path));
+    JsonFields fields(document, document.content, "", "mapping");
+    OrThrow(fields.error());
+    ColumnMapping mapping;
+    ReadColumns(&fields, &mapping);
+    mapping.joints = ReadJointMapping(&fields);
+    mapping.time_column = fields.OptionalText("time", "");
+    mapping.frame_rate = fields.OptionalNumber("frame_rate", "the frames per second", 0.0);
     const std::string problem = FrameRateProblem(mapping.frame_rate);
-    if (!problem.empty()) fields.Fail("frame_rate", problem);
-  }
-  mapping.length_unit = ReadLengthUnit(&fields, "length_unit");
-  mapping.length_scale = ReadLengthScale(&fields);
-  mapping.up = fields.OptionalText("up", "");
-  mapping.forward = fields.OptionalText("forward", "");
-  if (mapping.up.empty() != mapping.forward.empty()) {
-    fields.Fail(mapping.up.empty() ? "forward" : "up", "needs the other one: give up and forward");
-  }
-  if (!mapping.up.empty() && !fields.error()) {
-    const Result<Eigen::Matrix3d> axes = AxesRotation(mapping.up, mapping.forward);
+    if (fields.Has("frame_rate") && !problem.empty()) fields.Fail("frame_rate", problem);
+    mapping.length_unit = ReadLengthUnit(&fields, "length_unit");
+    mapping.length_scale = ReadLengthScale(&fields);
+    mapping.up = fields.OptionalText("up", "");
+    mapping.forward = fields.OptionalText("forward", "");
+    if (mapping.up.empty() != mapping.forward.empty()) {
+      fields.Fail(mapping.up.empty() ? "forward" : "up",
+                  "needs the other one: give up and forward");
+    }
+    const auto axes = Caught([&] { return AxesGiven(mapping.up, mapping.forward); });
     if (!axes.ok()) fields.Fail("up", "and forward: " + axes.error().message);
-  }
-  fields.OnlyAsked();
-  if (fields.error()) return *fields.error();
-  return mapping;
+    fields.OnlyAsked();
+    OrThrow(fields.error());
+    return mapping;
+  });
 }
 
 std::optional<JointReference> JointMapping::Of(int role) const {
@@ -635,11 +566,10 @@ void JointMapping::Set(int role, const JointReference& joint) {
   }
 }
 
-JointMapping ReadJointMapping(const JsonDocument& document, JsonFields* fields) {
+JointMapping ReadJointMapping(JsonFields* fields) {
   JointMapping mapping;
   if (!fields->Has("joints")) return mapping;
-  JsonFields joints(document, fields->At("joints"), fields->Pointer("joints"),
-                    fields->label() + ", joints");
+  JsonFields joints = fields->Inside(fields->At("joints"), "joints", "joints");
   for (int role = 0; role < kBodyJoints; ++role) {
     const std::optional<JointReference> joint = ReadJoint(&joints, RoleName(role).c_str());
     if (joint) mapping.Set(role, *joint);

@@ -1,5 +1,5 @@
-// datasets: what the joints, markers and columns of a file mean: which of them the pendulum is read
-// from, and which play the roles of a body; and mapping files.
+// datasets: the meaning of a file's joints, markers and columns: those that the pendulum is read
+// from, and those that play the roles of a body; and mapping files.
 #pragma once
 
 #include <optional>
@@ -81,7 +81,6 @@ Result<BodyRoles> ChooseRoles(const std::string& path, const std::vector<std::st
 // "all roles", "all roles, filled from neighbours: ...", or "none: ..." and why, for people.
 std::string RolesText(const Result<BodyRoles>& roles);
 
-struct JsonDocument;
 class JsonFields;
 
 // A mapping file, JSON: what a program's files mean, said once for all recordings made with it.
@@ -109,7 +108,7 @@ Result<ColumnMapping> ReadColumnMapping(const std::string& path);
 // "joints": {"hip": "Hips" or 0 or ["LASI", "RASI"], "left_ankle": ..., "left_knee": ...}: any role
 // of recording.h, all optional. "base", a robot's base of support, stands for both ankles.
 inline constexpr int kBaseRole = -1;  // its key in JointMapping::others
-JointMapping ReadJointMapping(const JsonDocument& document, JsonFields* fields);
+JointMapping ReadJointMapping(JsonFields* fields);
 
 // "mm", "cm" or "m"; nullopt when the key is not there.
 std::optional<LengthUnit> ReadLengthUnit(JsonFields* fields, const char* key);

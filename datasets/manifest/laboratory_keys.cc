@@ -17,41 +17,28 @@ using Json = nlohmann::ordered_json;
 void ReadAxes(JsonFields* given, std::string* up, std::string* forward) {
   *up = given->OptionalText("up", "");
   *forward = given->OptionalText("forward", "");
-  if (given->failed()) return;
-  const Result<Eigen::Matrix3d> axes =
-      AxesRotation(up->empty() ? "z" : *up, forward->empty() ? "x" : *forward);
-  if (!axes.ok()) given->Fail(up->empty() ? "forward" : "up", axes.error().message);
+  const auto axes = Caught([&] { return AxesGiven(*up, *forward); });
+  if (!given->failed() && !axes.ok()) {
+    given->Fail(up->empty() ? "forward" : "up", axes.error().message);
+  }
 }
 
 std::vector<std::string> ReadNames(JsonFields* given, const char* key) {
-  std::vector<std::string> names;
-  if (!given->Has(key)) return names;
-  for (const Json& item : given->List(key)) {
-    if (!item.is_string()) {
-      given->Fail(key, "must be a list of names, not of " + Shown(item));
-      break;
-    }
-    names.push_back(item.get<std::string>());
-  }
-  return names;
+  const Json& list = given->List(key);
+  const auto other =
+      std::find_if_not(list.begin(), list.end(), [](const Json& item) { return item.is_string(); });
+  if (other != list.end()) given->Fail(key, "must be a list of names, not of " + Shown(*other));
+  return ListOf<std::string>(list).value_or(std::vector<std::string>());
 }
 
-std::optional<double> ReadStart(JsonFields* given) {
-  if (!given->Has("start")) return std::nullopt;
-  return given->Number("start", "the file's clock at frame 0 in s");
-}
+constexpr char kClock[] = "the file's clock at frame 0 in s";
 
 std::optional<Eigen::Vector3d> ReadOrigin(JsonFields* given) {
-  constexpr const char* kKey = "origin";
-  if (!given->Has(kKey)) return std::nullopt;
-  Eigen::Vector3d origin;
-  int count = 0;
-  for (const Json& item : given->List(kKey)) {
-    if (item.is_number() && count < 3) origin[count] = item.get<double>();
-    count += item.is_number() ? 1 : 4;
-  }
-  if (count != 3) given->Fail(kKey, "must be three numbers, [x, y, z] in m");
-  return origin;
+  if (!given->Has("origin")) return std::nullopt;
+  const auto xyz = ListOf<double>(given->List("origin"));
+  if (xyz && xyz->size() == 3) return Eigen::Vector3d(xyz->data());
+  given->Fail("origin", "must be three numbers, [x, y, z] in m");
+  return std::nullopt;
 }
 
 ManifestPlates ReadPlates(JsonFields* given, int people) {
@@ -61,7 +48,7 @@ ManifestPlates ReadPlates(JsonFields* given, int people) {
                                        std::max(0, people - 1), 0);
   plates.file = given->OptionalText("file", "");
   plates.plates = ReadNames(given, "plates");
-  plates.start_s = ReadStart(given);
+  plates.start_s = given->NumberIfAny("start", kClock);
   plates.lowpass_hz = given->OptionalNumber("lowpass_hz", "a cut-off in Hz", 0.0);
   if (!given->failed() && !(plates.lowpass_hz >= 0.0 && std::isfinite(plates.lowpass_hz))) {
     given->Fail("lowpass_hz", "must be a cut-off in Hz, or 0 for 0.4 of the frame rate");
@@ -74,11 +61,10 @@ ManifestPlates ReadPlates(JsonFields* given, int people) {
 
 }  // namespace
 
-ManifestGround ReadGroundKey(const JsonDocument& document, JsonFields* fields) {
+ManifestGround ReadGroundKey(JsonFields* fields) {
   ManifestGround ground;
-  constexpr const char* kKey = "ground";
-  if (!fields->Has(kKey)) return ground;
-  JsonFields given(document, fields->At(kKey), fields->Pointer(kKey), fields->label() + ", ground");
+  if (!fields->Has("ground")) return ground;
+  JsonFields given = fields->Inside(fields->At("ground"), "ground", "ground");
   ground.csv = given.OptionalText("csv", "");
   ground.markers = ReadNames(&given, "markers");
   if (!given.failed() && ground.csv.empty() == ground.markers.empty()) {
@@ -87,42 +73,36 @@ ManifestGround ReadGroundKey(const JsonDocument& document, JsonFields* fields) {
                "three, on the ground)");
   }
   if (!given.failed() && !ground.markers.empty() && ground.markers.size() < 3) {
-    given.Fail("markers", "names " + std::to_string(ground.markers.size()) +
-                              "; a shift and a tilt differ only with three or more");
+    given.Fail("markers", StrCat("names ", ground.markers.size(),
+                                 "; a shift and a tilt differ only with three or more"));
   }
   ground.quantity = given.Choice("quantity", GroundQuantity::kDisplacement);
-  ground.start_s = ReadStart(&given);
+  ground.start_s = given.NumberIfAny("start", kClock);
   ReadAxes(&given, &ground.up, &ground.forward);
   given.OnlyAsked();
   fields->Add(given);
   return ground;
 }
 
-std::vector<ManifestPlates> ReadPlatesKey(const JsonDocument& document, JsonFields* fields,
-                                          int people) {
+std::vector<ManifestPlates> ReadPlatesKey(JsonFields* fields, int people) {
   std::vector<ManifestPlates> plates;
-  constexpr const char* kKey = "force_plates";
-  if (!fields->Has(kKey)) return plates;
-  const Json& value = fields->At(kKey);
-  const auto read = [&](const Json& item, const std::string& pointer, const std::string& label) {
-    JsonFields given(document, item, pointer, label);
+  const std::string key = "force_plates";
+  if (!fields->Has(key.c_str())) return plates;
+  const Json& value = fields->At(key.c_str());
+  const auto read = [&](const Json& item, const std::string& place, const std::string& label) {
+    JsonFields given = fields->Inside(item, place, label);
     plates.push_back(ReadPlates(&given, people));
     fields->Add(given);
   };
-  const std::string label = fields->label() + ", force_plates";
-  if (!value.is_array()) {
-    read(value, fields->Pointer(kKey), label);
-    return plates;
-  }
-  for (size_t i = 0; i < value.size(); ++i) {
-    read(value[i], fields->Pointer(std::string(kKey) + "/" + std::to_string(i)),
-         label + " " + std::to_string(i));
+  if (!value.is_array()) read(value, key, key);
+  for (size_t i = 0; value.is_array() && i < value.size(); ++i) {
+    read(value[i], StrCat(key, "/", i), StrCat(key, " ", i));
     for (size_t k = 0; k < i; ++k) {
       const bool both = plates[k].use == PlateUse::kMeasure && plates[i].use == PlateUse::kMeasure;
       if (!both || plates[k].person != plates[i].person) continue;
-      fields->Fail(kKey, "names person " + std::to_string(plates[i].person) +
-                             " twice; platforms of one file under one person are one entry "
-                             "(\"plates\"), and each entry needs its \"person\"");
+      fields->Fail(key, StrCat("names person ", plates[i].person,
+                               " twice; platforms of one file under one person are one entry "
+                               "(\"plates\"), and each entry needs its \"person\""));
     }
   }
   return plates;
@@ -155,8 +135,8 @@ void CheckPlatesAlone(const ManifestRecording& recording, JsonFields* fields) {
   if (!recording.plates_alone) return;
   const std::string alone = "\"motion\": \"none\" ";
   if (recording.subjects.size() > 1) {
-    fields->Fail("subjects", "names " + std::to_string(recording.subjects.size()) + " people; " +
-                                 alone + "is for one person on force plates");
+    fields->Fail("subjects", StrCat("names ", recording.subjects.size(), " people; ", alone,
+                                    "is for one person on force plates"));
   }
   if (!fields->Require("force_plates", "{\"use\": \"measure\", \"file\": ...}, without which " +
                                            alone + "leaves nothing that was measured")) {
@@ -174,16 +154,10 @@ void CheckPlatesAlone(const ManifestRecording& recording, JsonFields* fields) {
   }
 }
 
-StatedErrors ReadStatedErrors(const JsonDocument& document, JsonFields* fields,
-                              StatedErrors stated) {
-  constexpr const char* kKey = "stated_errors";
-  if (!fields->Has(kKey)) return stated;
-  if (!fields->At(kKey).is_object()) {
-    fields->Fail(kKey, "must be an object { } of standard deviations");
-    return stated;
-  }
-  JsonFields given(document, fields->At(kKey), fields->Pointer(kKey),
-                   fields->label() + ", stated_errors");
+StatedErrors ReadStatedErrors(JsonFields* fields, StatedErrors stated) {
+  const std::string key = "stated_errors";
+  if (!fields->Has(key.c_str())) return stated;
+  JsonFields given = fields->Inside(fields->At(key.c_str()), key, key);
   for (const StatedErrorRow& row : kStatedErrors) {
     double& value = stated.*row.value;
     value = given.OptionalNumber(row.key, "a standard deviation above 0", value);

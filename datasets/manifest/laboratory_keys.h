@@ -1,4 +1,4 @@
-// datasets: what a manifest says of a recording's laboratory: ground that moves, force platforms.
+// datasets: the laboratory of a manifest's recording: ground that moves, force platforms.
 //
 //   "ground": {"csv": "platform.csv", "quantity": "displacement", "start": 0.5}
 //   "ground": {"markers": ["plate1", "plate2", "plate3"]}
@@ -15,7 +15,6 @@
 
 namespace pushid {
 
-struct JsonDocument;
 class JsonFields;
 struct ManifestRecording;
 
@@ -56,9 +55,8 @@ struct ManifestPlates {
 };
 
 // The keys `ground` and `force_plates` of a recording of so many people, where it has them.
-ManifestGround ReadGroundKey(const JsonDocument& document, JsonFields* fields);
-std::vector<ManifestPlates> ReadPlatesKey(const JsonDocument& document, JsonFields* fields,
-                                          int people);
+ManifestGround ReadGroundKey(JsonFields* fields);
+std::vector<ManifestPlates> ReadPlatesKey(JsonFields* fields, int people);
 
 // A manifest's entry of a person on force plates whom nothing else measured.
 //
@@ -102,7 +100,6 @@ inline constexpr StatedErrorRow kStatedErrors[] = {
 
 // The object under "stated_errors", on top of `stated`; Fails at keys that are none of these and at
 // values that are not positive.
-StatedErrors ReadStatedErrors(const JsonDocument& document, JsonFields* fields,
-                              StatedErrors stated);
+StatedErrors ReadStatedErrors(JsonFields* fields, StatedErrors stated);
 
 }  // namespace pushid

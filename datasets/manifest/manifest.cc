@@ -38,12 +38,12 @@ PersonFacts FactsOf(const Json& object, const JsonFields& fields) {
   return facts;
 }
 
-void ReadSubjects(const JsonDocument& document, JsonFields* fields, ManifestRecording* recording) {
+void ReadSubjects(JsonFields* fields, ManifestRecording* recording) {
   if (!fields->Require("subjects", "a list of {\"id\", \"mass_kg\"}")) return;
   int index = 0;
   for (const Json& item : fields->List("subjects")) {
-    JsonFields subject(document, item, fields->Pointer("subjects/" + std::to_string(index)),
-                       fields->label() + ", subject " + std::to_string(index));
+    JsonFields subject =
+        fields->Inside(item, StrCat("subjects/", index), StrCat("subject ", index));
     ManifestSubject read{subject.Text("id", "text that names the person"),
                          subject.Number("mass_kg", "the person's mass in kg")};
     if (!subject.failed() && !(read.mass_kg > 0.0 && read.mass_kg <= kHeaviestPerson)) {
@@ -56,7 +56,7 @@ void ReadSubjects(const JsonDocument& document, JsonFields* fields, ManifestReco
       read.ankle_height_m =
           subject.OptionalNumber("ankle_height_m", "the ankles' height in m", kUsualAnkleHeight);
     }
-    read.joints = ReadJointMapping(document, &subject);
+    read.joints = ReadJointMapping(&subject);
     read.known = FactsOf(item, subject);
     fields->Add(subject);
     recording->subjects.push_back(read);
@@ -86,25 +86,22 @@ void ReadMotionNames(JsonFields* fields, ManifestRecording* recording) {
   std::vector<std::string>& files = recording->motion;
   for (const Json& item : fields->List(key.c_str())) {
     if (!item.is_string() || item.get<std::string>().empty()) {
-      fields->Fail(key + "/" + std::to_string(files.size()),
-                   "must be a file name, not " + Shown(item));
+      fields->Fail(StrCat(key, "/", files.size()), "must be a file name, not " + Shown(item));
       return;
     }
     files.push_back(item.get<std::string>());
   }
   if (!fields->failed() && files.size() != recording->subjects.size()) {
-    fields->Fail(key, "lists " + std::to_string(files.size()) + " files for " +
-                          std::to_string(recording->subjects.size()) +
-                          " subjects; there must be one per subject, in the same order");
+    fields->Fail(key, StrCat("lists ", files.size(), " files for ", recording->subjects.size(),
+                             " subjects; there must be one per subject, in the same order"));
   }
 }
 
-void ReadPushes(const JsonDocument& document, JsonFields* fields, ManifestRecording* recording) {
+void ReadPushes(JsonFields* fields, ManifestRecording* recording) {
   const int people = static_cast<int>(recording->subjects.size());
   for (const Json& item : fields->List("pushes")) {
     const std::string index = std::to_string(recording->pushes.size());
-    JsonFields push(document, item, fields->Pointer("pushes/" + index),
-                    fields->label() + ", push " + index);
+    JsonFields push = fields->Inside(item, "pushes/" + index, "push " + index);
     ManifestPush read{push.Whole("person", "the index of a subject, from 0", 0, people - 1),
                       push.Text("csv", "the name of a push CSV file")};
     if (!push.failed() && read.csv.empty()) push.Fail("csv", "is empty");
@@ -121,16 +118,6 @@ void ReadPushes(const JsonDocument& document, JsonFields* fields, ManifestRecord
 
 // A label of published recordings, which is like the key of a format.
 constexpr char kSplitLabel[] = "split";
-
-// A text under a key that no program knows is a label as well.
-void AddLabels(const Json& object, const JsonFields& fields, RecordingLabels* labels) {
-  if (!object.is_object()) return;
-  const std::vector<std::string>& known = fields.asked();
-  for (const auto& [key, value] : object.items()) {
-    const bool used = std::find(known.begin(), known.end(), key) != known.end();
-    if (!used && value.is_string()) labels->Set(key, value.get<std::string>());
-  }
-}
 
 // of: the object's. stated: the errors that the manifest states for all.
 ManifestRecording ReadRecording(const JsonDocument& document, const Json& object,
@@ -149,45 +136,44 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
   recording.labels.Set(
       kConditionLabel,
       fields.OptionalText(kConditionLabel, fields.OptionalText(kOldConditionKey, "")));
-  if (fields.Has("fps")) {
-    recording.fps = fields.Number("fps", "the frames per second");
-    const std::string problem = FrameRateProblem(recording.fps);
-    if (!problem.empty()) fields.Fail("fps", problem);
-  }
+  recording.fps = fields.OptionalNumber("fps", "the frames per second", 0.0);
+  const std::string problem = FrameRateProblem(recording.fps);
+  if (fields.Has("fps") && !problem.empty()) fields.Fail("fps", problem);
   recording.plates_alone = ReadPlatesAlone(&fields);
-  ReadSubjects(document, &fields, &recording);
+  ReadSubjects(&fields, &recording);
   const int people = static_cast<int>(recording.subjects.size());
   recording.pushed_person =
       fields.Whole("pushed_person",
                    "the index of the pushed subject, " +
-                       (people > 1 ? "0 to " + std::to_string(people - 1) : std::string("0")),
+                       (people > 1 ? StrCat("0 to ", people - 1) : std::string("0")),
                    0, people - 1);
   ReadMotionNames(&fields, &recording);
   recording.mapping = fields.OptionalText("mapping", "");
   recording.push_csv = fields.OptionalText("push_csv", "");
   recording.push_kind = fields.Choice("push_kind", PushKind::kExternal);
-  if (fields.Has("push_height_m")) {
-    recording.push_height_m = fields.Number("push_height_m", "the push's height above the ground");
-    if (!(*recording.push_height_m >= 0.0 && *recording.push_height_m <= kHighestPush)) {
-      fields.Fail("push_height_m", "is " + Rounded(*recording.push_height_m) +
-                                       "; a push is between 0 and 3 m above the ground");
-    }
+  recording.push_height_m =
+      fields.NumberIfAny("push_height_m", "the push's height above the ground");
+  const double height = recording.push_height_m.value_or(0.0);
+  if (!(height >= 0.0 && height <= kHighestPush)) {
+    fields.Fail("push_height_m",
+                "is " + Rounded(height) + "; a push is between 0 and 3 m above the ground");
   }
-  recording.joints = ReadJointMapping(document, &fields);
+  recording.joints = ReadJointMapping(&fields);
   recording.up = fields.OptionalText("up", recording.up);
   recording.forward = fields.OptionalText("forward", recording.forward);
   const Result<Eigen::Matrix3d> axes = AxesRotation(recording.up, recording.forward);
-  if (!axes.ok())
+  if (!axes.ok()) {
     fields.Fail(document.ErrorAt(fields.Pointer(fields.Has("up") ? "up" : "forward"),
                                  fields.label() + ": " + axes.error().message));
+  }
   recording.length_unit = ReadLengthUnit(&fields, "length_unit");
   recording.length_scale = ReadLengthScale(&fields);
-  ReadPushes(document, &fields, &recording);
+  ReadPushes(&fields, &recording);
   recording.initial_velocity = fields.Choice("initial_velocity", InitialVelocity::kZero);
-  recording.ground = ReadGroundKey(document, &fields);
-  recording.plates = ReadPlatesKey(document, &fields, people);
+  recording.ground = ReadGroundKey(&fields);
+  recording.plates = ReadPlatesKey(&fields, people);
   CheckPlatesAlone(recording, &fields);
-  recording.stated_errors = ReadStatedErrors(document, &fields, stated);
+  recording.stated_errors = ReadStatedErrors(&fields, stated);
   if (fields.Has("frames")) {
     recording.frames = fields.Whole("frames", "the number of frames", 0, kAnyFrame);
   }
@@ -198,7 +184,8 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
         fields.Whole("end_frame", "the frame after the last one used, after first_frame",
                      recording.first_frame + 1, kAnyFrame);
   }
-  AddLabels(object, fields, &recording.labels);
+  // A text under a key that no program knows is a label as well.
+  for (const auto& [key, text] : FactsOf(object, fields).texts) recording.labels.Set(key, text);
   recording.json = object;
   return recording;
 }
@@ -233,28 +220,21 @@ Json JointJson(const JointReference& joint) {
 // otherwise a list of that many empty ones.
 Json ObjectsUnder(const Json& object, const char* key, std::size_t size) {
   Json list = object.contains(key) ? object.at(key) : Json();
-  bool usable = list.is_array() && list.size() == size;
-  if (usable) {
-    for (const Json& item : list) usable = usable && item.is_object();
-  }
+  const bool usable =
+      list.is_array() && list.size() == size &&
+      std::all_of(list.begin(), list.end(), [](const Json& item) { return item.is_object(); });
   return usable ? list : Json(size, Json::object());
 }
 
-// The pendulum's first, as people write them.
-std::vector<int> WrittenRoles() {
-  std::vector<int> roles = {kBodyHip, kLeftAnkle, kRightAnkle};
-  for (int role = 0; role < kBodyJoints; ++role) {
-    if (std::find(roles.begin(), roles.end(), role) == roles.end()) roles.push_back(role);
-  }
-  return roles;
-}
-
+// The pendulum's joints come first, as people write them.
 Json JointsJson(const JointMapping& joints, const Json& object) {
   Json json = object.contains("joints") ? object.at("joints") : Json::object();
-  for (int role : WrittenRoles()) {
-    const bool by_base = role == kLeftAnkle || role == kRightAnkle;
-    const std::optional<JointReference> joint =
-        by_base && joints.others.count(kBaseRole) > 0 ? std::nullopt : joints.Of(role);
+  std::vector<int> roles = {kBodyHip, kLeftAnkle, kRightAnkle};
+  for (int role = 0; role < kBodyJoints; ++role) roles.push_back(role);
+  for (int role : roles) {
+    const bool by_base =
+        (role == kLeftAnkle || role == kRightAnkle) && joints.others.count(kBaseRole) > 0;
+    const std::optional<JointReference> joint = by_base ? std::nullopt : joints.Of(role);
     SetUnless(!joint.has_value(), RoleName(role).c_str(), joint ? JointJson(*joint) : Json(),
               &json);
   }
@@ -327,84 +307,10 @@ std::string SettingsOf(const Manifest& manifest) {
     ++counts[recording.labels.setting()];
   std::vector<std::string> texts;
   for (const auto& [setting, count] : counts) {
-    texts.push_back(setting + " (" + std::to_string(count) + ")");
+    texts.push_back(StrCat(setting, " (", count, ")"));
   }
   return ListOfNames(texts);
 }
-
-std::string SomeIdsOf(const Manifest& manifest) {
-  std::vector<std::string> ids;
-  for (const ManifestRecording& recording : manifest.recordings) ids.push_back(recording.id);
-  return ListOfNames(ids, 6, "recordings");
-}
-
-MaybeError LeaveOut(const Manifest& manifest, const std::vector<std::string>& ids,
-                    std::vector<int>* selected) {
-  for (const std::string& id : ids) {
-    const auto at = std::find_if(selected->begin(), selected->end(),
-                                 [&](int index) { return manifest.recordings[index].id == id; });
-    if (at == selected->end()) {
-      return Error{"leave_out: there is no recording " + Quoted(id) + " among the selected ones",
-                   manifest.path, 0};
-    }
-    selected->erase(at);
-  }
-  if (!selected->empty() || ids.empty()) return std::nullopt;
-  return Error{"leave_out leaves no recording", manifest.path, 0};
-}
-
-namespace fs = std::filesystem;
-
-// The place where something was first said.
-struct Said {
-  std::string path;
-  int line = 0;
-  double mass_kg = 0.0;
-  std::string Where() const { return path + ":" + std::to_string(line); }
-};
-
-class Merger {
- public:
-  MaybeError Add(Manifest manifest) {
-    merged_.path += (merged_.path.empty() ? "" : ",") + manifest.path;
-    (*merged_.json)["manifests"].push_back(std::move(*manifest.json));
-    for (ManifestRecording& entry : manifest.recordings) {
-      if (MaybeError error = Check(manifest.path, entry)) return error;
-      if (!entry.length_unit && !entry.length_scale) {
-        entry.length_unit = manifest.length_unit;
-        entry.length_scale = manifest.length_scale;
-      }
-      merged_.recordings.push_back(std::move(entry));
-    }
-    return std::nullopt;
-  }
-
-  Manifest Take() { return std::move(merged_); }
-
- private:
-  MaybeError Check(const std::string& path, const ManifestRecording& entry) {
-    const auto [id, new_id] = ids_.emplace(entry.id, Said{path, entry.line});
-    if (!new_id) {
-      return Error{"recording " + Quoted(entry.id) + ": this id is in " + id->second.Where() +
-                       " too; give one of them another, or leave one manifest out",
-                   path, entry.line};
-    }
-    for (const ManifestSubject& subject : entry.subjects) {
-      const auto [said, is_new] =
-          subjects_.emplace(subject.id, Said{path, entry.line, subject.mass_kg});
-      // Within a manifest people may gain weight; two studies' "S01" are hardly one person.
-      if (is_new || said->second.path == path || said->second.mass_kg == subject.mass_kg) continue;
-      return Error{"recording " + Quoted(entry.id) + ": " + Quoted(subject.id) + " weighs " +
-                       Rounded(subject.mass_kg) + " kg here and " + Rounded(said->second.mass_kg) +
-                       " kg in " + said->second.Where() + "; other people need other ids",
-                   path, entry.line};
-    }
-    return std::nullopt;
-  }
-
-  Manifest merged_;
-  std::map<std::string, Said> ids_, subjects_;
-};
 
 }  // namespace
 
@@ -434,62 +340,61 @@ std::vector<std::string> MisspeltKeys(const ManifestRecording& entry) {
 }
 
 Result<Manifest> ReadManifest(const std::string& path) {
-  Result<JsonDocument> read = ReadJsonDocument(path);
-  if (!read.ok()) return read.error();
-  const JsonDocument& document = read.value();
-  JsonFields top(document, document.content, "", "manifest");
-  Manifest manifest;
-  manifest.path = path;
-  if (top.Has("format") && !top.Has("recordings")) {
-    return document.ErrorAt("/format", "this is a " + top.OptionalText("format", "file") +
-                                           ", no manifest of recordings");
-  }
-  const std::string schema = top.OptionalText("schema", kSchema);
-  if (schema != kSchema && schema.rfind("pushid-manifest/", 0) == 0) {
-    return document.ErrorAt("/schema", Quoted(schema) + " is newer; update pushid to read it");
-  }
-  top.Require("recordings", "a list of recordings");
-  const Json& recordings = top.List("recordings");
-  if (!top.failed() && recordings.empty()) {
-    top.Fail("recordings", "is empty: the manifest lists no recordings");
-  }
-  if (top.Has("units") && top.At("units").is_object()) {
-    JsonFields units(document, top.At("units"), "/units", "manifest, units");
-    manifest.length_unit = ReadLengthUnit(&units, "bvh_length");
-    top.Fail(units.error());
-  }
-  if (top.Has("length_unit")) manifest.length_unit = ReadLengthUnit(&top, "length_unit");
-  manifest.length_scale = ReadLengthScale(&top);
-  if (manifest.length_scale && manifest.length_unit && !top.failed()) {
-    top.Fail("length_scale", "is given together with units.bvh_length; give one of them");
-  }
-  manifest.stated_errors = ReadStatedErrors(document, &top, {});
-  if (top.error()) return *top.error();
-
-  const std::vector<int> lines = document.ElementLines("/recordings");
-  std::unordered_map<std::string, int> line_of_id;
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    JsonFields fields(document, recordings[i], "/recordings/" + std::to_string(i),
-                      "recording " + std::to_string(i));
-    ManifestRecording recording =
-        ReadRecording(document, recordings[i], manifest.stated_errors, &fields);
-    top.Add(fields);
-    if (top.is_wrong()) return *top.error();
-    recording.manifest = path;
-    recording.line = lines[i];
-    const auto [earlier, is_new] = line_of_id.emplace(recording.id, recording.line);
-    if (!is_new && !top.failed()) {
-      return document.ErrorAt("/recordings/" + std::to_string(i) + "/id",
-                              "recording " + Quoted(recording.id) +
-                                  ": this id was given before, in line " +
-                                  std::to_string(earlier->second) + "; ids must be unique");
+  return Caught([&] {
+    const JsonDocument document = OrThrow(ReadJsonDocument(path));
+    JsonFields top(document, document.content, "", "manifest");
+    Manifest manifest;
+    manifest.path = path;
+    if (top.Has("format") && !top.Has("recordings")) {
+      throw document.ErrorAt("/format", "this is a " + top.OptionalText("format", "file") +
+                                            ", no manifest of recordings");
     }
-    manifest.recordings.push_back(std::move(recording));
-  }
-  if (top.failed()) return *top.error();
-  manifest.json = document.content;
-  manifest.json->erase("recordings");
-  return manifest;
+    const std::string schema = top.OptionalText("schema", kSchema);
+    if (schema != kSchema && schema.rfind("pushid-manifest/", 0) == 0) {
+      throw document.ErrorAt("/schema", Quoted(schema) + " is newer; update pushid to read it");
+    }
+    top.Require("recordings", "a list of recordings");
+    const Json& recordings = top.List("recordings");
+    if (!top.failed() && recordings.empty()) {
+      top.Fail("recordings", "is empty: the manifest lists no recordings");
+    }
+    if (top.Has("units") && top.At("units").is_object()) {
+      JsonFields units = top.Inside(top.At("units"), "units", "units");
+      manifest.length_unit = ReadLengthUnit(&units, "bvh_length");
+      top.Fail(units.error());
+    }
+    if (top.Has("length_unit")) manifest.length_unit = ReadLengthUnit(&top, "length_unit");
+    manifest.length_scale = ReadLengthScale(&top);
+    if (manifest.length_scale && manifest.length_unit && !top.failed()) {
+      top.Fail("length_scale", "is given together with units.bvh_length; give one of them");
+    }
+    manifest.stated_errors = ReadStatedErrors(&top, {});
+    OrThrow(top.error());
+
+    const std::vector<int> lines = document.ElementLines("/recordings");
+    std::unordered_map<std::string, int> line_of_id;
+    for (std::size_t i = 0; i < recordings.size(); ++i) {
+      const std::string place = StrCat("/recordings/", i);
+      JsonFields fields(document, recordings[i], place, StrCat("recording ", i));
+      ManifestRecording recording =
+          ReadRecording(document, recordings[i], manifest.stated_errors, &fields);
+      top.Add(fields);
+      if (top.is_wrong()) throw *top.error();
+      recording.manifest = path;
+      recording.line = lines[i];
+      const auto [earlier, is_new] = line_of_id.emplace(recording.id, recording.line);
+      if (!is_new && !top.failed()) {
+        throw document.ErrorAt(place + "/id", StrCat("recording ", Quoted(recording.id),
+                                                     ": this id was given before, in line ",
+                                                     earlier->second, "; ids must be unique"));
+      }
+      manifest.recordings.push_back(std::move(recording));
+    }
+    OrThrow(top.error());
+    manifest.json = document.content;
+    manifest.json->erase("recordings");
+    return manifest;
+  });
 }
 
 ManifestRecording EntryOf(const Recording& recording) {
@@ -541,59 +446,67 @@ std::string ResolvePath(const std::string& manifest_path, const std::string& fil
 Result<std::vector<int>> SelectRecordings(const Manifest& manifest, const std::string& setting,
                                           const std::vector<std::string>& ids,
                                           const std::vector<std::string>& leave_out) {
-  const std::size_t count = manifest.recordings.size();
-  std::vector<bool> in_setting(count, false);
-  for (std::size_t begin = 0; begin <= setting.size();) {
-    const std::size_t comma = std::min(setting.find(',', begin), setting.size());
-    const std::string_view name = Trimmed(std::string_view(setting).substr(begin, comma - begin));
-    begin = comma + 1;
+  const std::vector<ManifestRecording>& all = manifest.recordings;
+  std::vector<bool> in_setting(all.size(), false);
+  for (const std::string& given : SplitList(setting + ",")) {
+    const std::string_view name = Trimmed(given);
     bool found = false;
-    for (std::size_t i = 0; i < count; ++i) {
-      const ManifestRecording& recording = manifest.recordings[i];
-      if (name != recording.labels.setting() && name != "all" &&
-          !(name == "groups" && recording.subjects.size() > 1)) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (name != all[i].labels.setting() && name != "all" &&
+          !(name == "groups" && all[i].subjects.size() > 1)) {
         continue;
       }
       found = in_setting[i] = true;
     }
-    if (!found) {
-      return Error{"--setting=" + setting + ": " +
-                       (name == "groups" ? "no recording has more than one person"
-                                         : "no recording has the setting " + Quoted(name)) +
-                       "; there are " + SettingsOf(manifest) + ", besides all and groups",
-                   manifest.path, 0};
-    }
+    if (found) continue;
+    return Error{"--setting=" + setting + ": " +
+                     (name == "groups" ? "no recording has more than one person"
+                                       : "no recording has the setting " + Quoted(name)) +
+                     "; there are " + SettingsOf(manifest) + ", besides all and groups",
+                 manifest.path};
   }
 
-  const std::unordered_set<std::string> wanted(ids.begin(), ids.end());
-  std::unordered_set<std::string> seen;
-  std::vector<int> selected;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::string& id = manifest.recordings[i].id;
-    if (!wanted.empty() && wanted.count(id) == 0) continue;
-    seen.insert(id);
-    if (in_setting[i]) {
-      selected.push_back(static_cast<int>(i));
-    } else if (!wanted.empty()) {
-      return Error{"recording " + Quoted(id) + " has the setting " +
-                       Quoted(manifest.recordings[i].labels.setting()) +
-                       ", which --setting=" + setting + " leaves out",
-                   manifest.recordings[i].manifest, manifest.recordings[i].line};
-    }
+  std::unordered_map<std::string, int> indices;
+  std::vector<std::string> known;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    indices[all[i].id] = static_cast<int>(i);
+    known.push_back(all[i].id);
   }
+  std::vector<bool> wanted(all.size(), ids.empty());
   for (const std::string& id : ids) {
-    if (seen.count(id) == 0) {
-      return Error{"there is no recording " + Quoted(id) + "; it has " + SomeIdsOf(manifest),
-                   manifest.path, 0};
+    const auto at = indices.find(id);
+    if (at == indices.end()) {
+      return Error{
+          "there is no recording " + Quoted(id) + "; it has " + ListOfNames(known, 6, "recordings"),
+          manifest.path};
     }
+    wanted[at->second] = true;
+    const ManifestRecording& entry = all[at->second];
+    if (in_setting[at->second]) continue;
+    return Error{"recording " + Quoted(id) + " has the setting " + Quoted(entry.labels.setting()) +
+                     ", which --setting=" + setting + " leaves out",
+                 entry.manifest, entry.line};
   }
-  if (MaybeError error = LeaveOut(manifest, leave_out, &selected)) return *error;
-  return selected;
+  std::vector<int> selected;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (wanted[i] && in_setting[i]) selected.push_back(static_cast<int>(i));
+  }
+  for (const std::string& id : leave_out) {
+    const auto at = std::find_if(selected.begin(), selected.end(),
+                                 [&](int index) { return all[index].id == id; });
+    if (at == selected.end()) {
+      return Error{"leave_out: there is no recording " + Quoted(id) + " among the selected ones",
+                   manifest.path};
+    }
+    selected.erase(at);
+  }
+  if (!selected.empty() || leave_out.empty()) return selected;
+  return Error{"leave_out leaves no recording", manifest.path};
 }
 
 std::vector<std::string> ManifestPaths(const std::string& list) {
   std::error_code ignored;
-  if (list.find(',') == std::string::npos || fs::exists(list, ignored)) return {list};
+  if (list.find(',') == std::string::npos || std::filesystem::exists(list, ignored)) return {list};
   std::vector<std::string> paths;
   for (const std::string& path : SplitList(list)) {
     if (!path.empty()) paths.push_back(path);
@@ -604,25 +517,56 @@ std::vector<std::string> ManifestPaths(const std::string& list) {
 Result<Manifest> ReadManifests(const std::string& list) {
   const std::vector<std::string> paths = ManifestPaths(list);
   if (paths.size() == 1) return ReadManifest(paths[0]);
-  Merger merger;
-  for (const std::string& path : paths) {
-    Result<Manifest> manifest = ReadManifest(path);
-    if (!manifest.ok()) return manifest;
-    if (MaybeError error = merger.Add(std::move(manifest.value()))) return *error;
-  }
-  return merger.Take();
+  return Caught([&] {
+    Manifest merged;
+    // The place where an id was first given.
+    struct Said {
+      std::string path, where;
+      double mass_kg = 0.0;
+    };
+    std::map<std::string, Said> ids, people;
+    for (const std::string& path : paths) {
+      Manifest manifest = OrThrow(ReadManifest(path));
+      merged.path += (merged.path.empty() ? "" : ",") + path;
+      (*merged.json)["manifests"].push_back(std::move(*manifest.json));
+      for (ManifestRecording& entry : manifest.recordings) {
+        const auto complain = [&](const std::string& problem) -> Error {
+          return {"recording " + Quoted(entry.id) + ": " + problem, path, entry.line};
+        };
+        const std::string where = StrCat(path, ":", entry.line);
+        const auto [id, new_id] = ids.emplace(entry.id, Said{path, where});
+        if (!new_id) {
+          throw complain("this id is in " + id->second.where +
+                         " too; give one of them another, or leave one manifest out");
+        }
+        for (const ManifestSubject& subject : entry.subjects) {
+          const Said& said =
+              people.emplace(subject.id, Said{path, where, subject.mass_kg}).first->second;
+          // Within a manifest people may gain weight; two studies' "S01" are hardly one person.
+          if (said.path == path || said.mass_kg == subject.mass_kg) continue;
+          throw complain(Quoted(subject.id) + " weighs " + Rounded(subject.mass_kg) +
+                         " kg here and " + Rounded(said.mass_kg) + " kg in " + said.where +
+                         "; other people need other ids");
+        }
+        if (!entry.length_unit && !entry.length_scale) {
+          entry.length_unit = manifest.length_unit;
+          entry.length_scale = manifest.length_scale;
+        }
+        merged.recordings.push_back(std::move(entry));
+      }
+    }
+    return merged;
+  });
 }
 
 Result<std::string> HashManifests(const std::string& list) {
   const std::vector<std::string> paths = ManifestPaths(list);
   if (paths.size() == 1) return HashFile(paths[0]);
-  ContentHash hashes;
-  for (const std::string& path : paths) {
-    const Result<std::string> hash = HashFile(path);
-    if (!hash.ok()) return hash;
-    hashes.Add(hash.value());
-  }
-  return hashes.Hex();
+  return Caught([&] {
+    ContentHash hashes;
+    for (const std::string& path : paths) hashes.Add(OrThrow(HashFile(path)));
+    return hashes.Hex();
+  });
 }
 
 }  // namespace pushid

@@ -35,8 +35,8 @@ struct JointReference {
   std::vector<JointReference> mean_of{};  // not empty: their mean, and nothing else is used
 };
 
-// Which joints the pendulum is read from, and those that play the body's other roles; whatever is
-// absent is found by default (joint_mapping.h).
+// The joints that the pendulum is read from, and those that play the body's other roles; whatever
+// is absent is found by default (joint_mapping.h).
 struct JointMapping {
   std::optional<JointReference> hip, left_ankle, right_ankle;
   std::map<int, JointReference> others{};  // by role (recording.h)
@@ -136,7 +136,7 @@ const std::vector<std::string>& ManifestKeys();
 // that are like no known one are a user's own, and fine.
 std::vector<std::string> MisspeltKeys(const ManifestRecording& entry);
 
-// Which recordings a run uses: indices into manifest.recordings, in the manifest's order.
+// The recordings that a run uses: indices into manifest.recordings, in the manifest's order.
 //
 // `setting` as --setting spells it: "all", or a comma-separated list of the manifest's settings and
 // "groups" (recordings of more than one person). `ids`: only these; empty: no restriction.

@@ -13,34 +13,17 @@ constexpr double kHeadPerNeck = 0.66;                        // neck to head, of
 constexpr double kToeAhead = 0.42, kToeBelow = 0.18;         // of the shank
 constexpr double kAside = 0.36, kBack = 0.19, kDown = 0.30;  // Bell et al., of the pelvis' width
 
-bool HasPelvis(const BodyRoles& roles) {
-  return !roles.left_asis.empty() && !roles.right_asis.empty() && !roles.back.empty();
-}
-
-bool IsFilled(const BodyRoles& roles, int role) {
-  switch (role) {
-    case kLowerSpine:
-    case kMiddleSpine:
-    case kUpperSpine:
-    case kNeck:
-    case kBodyHead:
-    case kRightClavicle:
-    case kLeftClavicle:
-    case kRightToe:
-    case kLeftToe:
-      return true;
-    case kRightHip:
-    case kLeftHip:
-      return HasPelvis(roles);
-    default:
-      return false;
-  }
-}
-
+// Roles that are lacking and that neighbours fill, or that they do not.
 std::vector<int> Lacking(const BodyRoles& roles, bool filled) {
+  const bool pelvis = !roles.left_asis.empty() && !roles.right_asis.empty() && !roles.back.empty();
   std::vector<int> lacking;
   for (int role = 0; role < kBodyJoints; ++role) {
-    if (!roles.Has(role) && IsFilled(roles, role) == filled) lacking.push_back(role);
+    const bool hip = role == kRightHip || role == kLeftHip;
+    const bool trunk = role > kBodyHip && role <= kBodyHead;
+    const bool end =
+        role == kRightClavicle || role == kLeftClavicle || role == kRightToe || role == kLeftToe;
+    const bool fills = trunk || end || (hip && pelvis);
+    if (!roles.Has(role) && fills == filled) lacking.push_back(role);
   }
   return lacking;
 }

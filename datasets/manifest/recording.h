@@ -166,7 +166,7 @@ struct RecordedPerson {
   // Names and parents (-1 for a root) of `joints`; empty unless those were asked for.
   std::vector<std::string> joint_names;
   std::vector<int> joint_parents;
-  // Which of them play the roles of a body; no role where the joints were not asked for.
+  // The joints that play the roles of a body; no role where they were not asked for.
   BodyRoles roles;
   std::optional<FileSkeleton> skeleton;  // of a BVH file, beside its joints
 };

@@ -29,30 +29,6 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 constexpr char kPlatform[] = "platform:";
 
-// Newtons, or newton metres, in one of a file's unit ("kN", "N.mm"); nullopt: it is no such unit.
-std::optional<double> NewtonsIn(const std::string& unit, bool moment = false) {
-  constexpr std::pair<std::string_view, double> kForces[] = {{"N", 1.0},       {"Newton", 1.0},
-                                                             {"Newtons", 1.0}, {"kN", 1e3},
-                                                             {"lbf", 4.44822}, {"kgf", 9.80665}};
-  std::string letters;
-  std::copy_if(unit.begin(), unit.end(), std::back_inserter(letters),
-               [](unsigned char c) { return std::isalpha(c) != 0; });
-  for (const auto& [name, newtons] : kForces) {
-    if (!EqualsIgnoringCase(letters.substr(0, name.size()), name)) continue;
-    const std::string rest = letters.substr(name.size());
-    const std::optional<LengthUnit> length = FromName<LengthUnit>(rest);
-    if (moment && length) return newtons * MetresPer(*length);
-    if (!moment && rest.empty()) return newtons;
-  }
-  return std::nullopt;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Lengths of platforms, m: beyond them a length is in another unit than the file says.
 constexpr double kLeastSide = 0.005, kMostSide = 20.0, kLeastOrigin = 5e-4, kMostOrigin = 2.0;
 constexpr double kLeastLever = 1e-3;   // m, from the middle to where people press, at the median
@@ -63,14 +39,14 @@ class Platform {
   Platform(const C3dFile& file, int index, LengthUnit unit)
       : file_(file),
         platform_(file.platforms[index]),
-        name_(kPlatform + std::to_string(index + 1)),
+        name_(StrCat(kPlatform, index + 1)),
         unit_(unit),
         num_channels_(platform_.type == 3 ? 8 : 6) {}
 
-  Result<PlatformRecord> Record() {
-    std::string problem = Problem();
-    if (problem.empty()) problem = Place();
-    if (!problem.empty()) return Error{name_ + " " + problem, file_.path};
+  // Throws an Error where it cannot be evaluated.
+  PlatformRecord Record() {
+    Check();
+    Place();
     const auto says = [this](const char* name) {
       return file_.parameters.Find("FORCE_PLATFORM", name) != nullptr;
     };
@@ -90,7 +66,7 @@ class Platform {
       double free_moment = 0.0;
       Sample(i, &force, &centre, &free_moment);
       if (!force.allFinite()) {
-        return Error{name_ + " is not finite at sample " + std::to_string(i), file_.path};
+        throw Error{StrCat(name_, " is not finite at sample ", i), file_.path};
       }
       const bool presses = std::fabs(force.z()) >= kPressed && centre.allFinite();
       record_.force.push_back(axes_ * force);
@@ -120,49 +96,48 @@ class Platform {
 
  private:
   std::size_t num_samples() const { return file_.analog[platform_.channels[0]].samples.size(); }
+  [[noreturn]] void Fail(const std::string& what) const {
+    throw Error{name_ + " " + what, file_.path};
+  }
   void Warn(const std::string& what) { record_.warnings.push_back(name_ + " " + what); }
 
-  // Why it cannot be evaluated; empty: it can.
-  std::string Problem() const {
+  // Whether it can be evaluated.
+  void Check() const {
     const int type = platform_.type, channels = static_cast<int>(file_.analog.size());
-    if (type < 1 || type > 4) {
-      return (type == 0 ? "has no TYPE" : "has the TYPE " + std::to_string(type)) +
-             "; types 1 to 4 are known";
-    }
+    if (type == 0) Fail("has no TYPE; types 1 to 4 are known");
+    if (type < 1 || type > 4) Fail(StrCat("has the TYPE ", type, "; types 1 to 4 are known"));
     if (static_cast<int>(platform_.channels.size()) < num_channels_) {
-      return "has " + std::to_string(platform_.channels.size()) + " of " +
-             std::to_string(num_channels_) + " channels (CHANNEL)";
+      Fail(StrCat("has ", platform_.channels.size(), " of ", num_channels_, " channels (CHANNEL)"));
     }
     for (int c = 0; c < num_channels_; ++c) {
       const int channel = platform_.channels[c];
       if (channel >= 0 && channel < channels) continue;
-      return "names channel " + std::to_string(channel + 1) + " (CHANNEL); the file has " +
-             (channels == 0 ? "no analog channels" : "1 to " + std::to_string(channels));
+      Fail(StrCat("names channel ", channel + 1, " (CHANNEL); the file has ",
+                  channels == 0 ? "no analog channels" : StrCat("1 to ", channels)));
     }
     const Vector3d& origin = platform_.origin;
-    if (!platform_.corners.allFinite()) return "has no CORNERS";
+    if (!platform_.corners.allFinite()) Fail("has no CORNERS");
     if (type == 3 && !(origin.allFinite() && origin.x() != 0.0 && origin.y() != 0.0)) {
-      return "has no distances of its sensors, a and b (ORIGIN)";
+      Fail("has no distances of its sensors, a and b (ORIGIN)");
     }
-    return type == 4 && !platform_.calibration.allFinite() ? "has no CAL_MATRIX" : "";
+    if (type == 4 && !platform_.calibration.allFinite()) Fail("has no CAL_MATRIX");
   }
 
-  // Axes and centre. Returns what is wrong with the corners.
-  std::string Place() {
+  // Sets axes and centre by the corners.
+  void Place() {
     const Eigen::Matrix<double, 3, 4> corners = MetresPer(unit_) * platform_.corners;
     centre_ = corners.rowwise().mean();
     const Vector3d x = corners.col(0) - corners.col(1), y = corners.col(0) - corners.col(3);
     const Vector3d z = x.cross(y);
     half_ = {0.5 * x.norm(), 0.5 * y.norm()};
-    if (!(z.norm() > 1e-3 * x.norm() * y.norm())) return "has CORNERS that span no surface";
+    if (!(z.norm() > 1e-3 * x.norm() * y.norm())) Fail("has CORNERS that span no surface");
     if (2.0 * half_.minCoeff() < kLeastSide || 2.0 * half_.maxCoeff() > kMostSide) {
-      return "has CORNERS of " + Rounded(x.norm(), 3) + " by " + Rounded(y.norm(), 3) +
-             " m: are they in POINT:UNITS, " + Quoted(file_.point_unit) + "?";
+      Fail("has CORNERS of " + Rounded(x.norm(), 3) + " by " + Rounded(y.norm(), 3) +
+           " m: are they in POINT:UNITS, " + Quoted(file_.point_unit) + "?");
     }
     axes_.col(0) = x.normalized();
     axes_.col(2) = z.normalized();
     axes_.col(1) = axes_.col(2).cross(axes_.col(0));
-    return "";
   }
 
   void ReadOrigin() {
@@ -218,7 +193,7 @@ class Platform {
           read.segment<2>(3).norm() / (platform_.type == 1 ? 1.0 : std::fabs(read[2]));
       if (std::fabs(read[2]) >= kPressed && std::isfinite(lever)) levers.push_back(lever);
     }
-    const double lever = levers.empty() ? 0.0 : Median(std::move(levers));
+    const double lever = levers.empty() ? 0.0 : UpperMedian(std::move(levers));
     for (LengthUnit unit : {unit_, LengthUnit::kMillimetre, LengthUnit::kMetre}) {
       const double length = lever * MetresPer(unit);
       if (length >= kLeastLever && length <= half_.norm()) return unit;
@@ -230,11 +205,10 @@ class Platform {
   void ReadZero() {
     const int first = file_.platform_zero_first, last = file_.platform_zero_last;
     if (last < 1) return;
-    const std::string zero =
-        "has the ZERO frames " + std::to_string(first) + " to " + std::to_string(last);
+    const std::string zero = StrCat("has the ZERO frames ", first, " to ", last);
     if (first < 1 || last < first || last > file_.num_frames()) {
-      return Warn(zero + ", which the file, 1 to " + std::to_string(file_.num_frames()) +
-                  ", does not have: nothing is taken off, and an offset moves its centre");
+      return Warn(StrCat(zero, ", which the file, 1 to ", file_.num_frames(),
+                         ", does not have: nothing is taken off, and an offset moves its centre"));
     }
     const std::size_t per_frame = file_.samples_per_frame();
     Eigen::Matrix<double, 8, 1> baseline = Eigen::Matrix<double, 8, 1>::Zero();
@@ -309,12 +283,37 @@ class Platform {
 
 }  // namespace
 
+std::optional<double> NewtonsIn(std::string_view unit, bool moment) {
+  constexpr std::pair<std::string_view, double> kForces[] = {{"N", 1.0},       {"Newton", 1.0},
+                                                             {"Newtons", 1.0}, {"kN", 1e3},
+                                                             {"lbf", 4.44822}, {"kgf", 9.80665}};
+  std::string letters;
+  std::copy_if(unit.begin(), unit.end(), std::back_inserter(letters),
+               [](unsigned char c) { return std::isalpha(c) != 0; });
+  for (const auto& [name, newtons] : kForces) {
+    if (!EqualsIgnoringCase(letters.substr(0, name.size()), name)) continue;
+    const std::string rest = letters.substr(name.size());
+    const std::optional<LengthUnit> length = FromName<LengthUnit>(rest);
+    if (moment && length) return newtons * MetresPer(*length);
+    if (!moment && rest.empty()) return newtons;
+  }
+  return std::nullopt;
+}
+
+double NewtonsInColumn(const std::string& name) {
+  const std::size_t open = name.find_last_of("([");
+  if (open == std::string::npos) return 1.0;
+  const std::size_t end = name.find_first_of(",)]", open);
+  return NewtonsIn(std::string_view(name).substr(open + 1, end - open - 1)).value_or(1.0);
+}
+
 Result<PlatformRecord> EvaluatePlatform(const C3dFile& file, int platform, LengthUnit unit) {
   const int count = static_cast<int>(file.platforms.size());
-  if (platform >= 0 && platform < count) return Platform(file, platform, unit).Record();
-  return Error{"there is no force platform " + std::to_string(platform + 1) + "; the file has " +
-                   std::to_string(count),
-               file.path};
+  if (platform < 0 || platform >= count) {
+    return Error{StrCat("there is no force platform ", platform + 1, "; the file has ", count),
+                 file.path};
+  }
+  return Caught([&] { return Platform(file, platform, unit).Record(); });
 }
 
 namespace {
@@ -337,23 +336,23 @@ std::vector<int> ColumnsCalled(const std::string& name, const std::vector<std::s
 
 // A column or three of a table ("cell" for cell_x, cell_y, cell_z), whose clock starts with the
 // file.
-Result<SensorRecord> FromTable(const SensorChoice& choice) {
-  const Result<TimedColumns> read = ReadTimedColumns(
-      choice.file, [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
+SensorRecord FromTable(const SensorChoice& choice) {
+  double newtons = 1.0;
+  const TimedColumns table =
+      ReadTimedColumns(choice.file, [&](const std::vector<std::string>& names) {
         const std::vector<int> columns = ColumnsCalled(choice.column, names);
-        if (!columns.empty()) return columns;
-        return UnknownNameError(choice.file, "column", names, choice.column);
+        if (columns.empty()) throw UnknownNameError(choice.file, "column", names, choice.column);
+        if (!choice.gain) newtons = NewtonsInColumn(names[columns[0]]);
+        return columns;
       });
-  if (!read.ok()) return read.error();
-  const TimedColumns& table = read.value();
   SensorRecord record;
   record.is_vector = table.values.size() == 3;
   for (int row = 0; row < table.num_rows(); ++row) {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < table.values.size(); ++i) force[i] = table.values[i][row];
+    for (std::size_t i = 0; i < table.values.size(); ++i) force[i] = newtons * table.values[i][row];
     if (!force.allFinite()) {
-      return Error{choice.column + " is missing; fill the gap or cut the record there", choice.file,
-                   table.lines[row]};
+      throw Error{choice.column + " is missing; fill the gap or cut the record there", choice.file,
+                  table.lines[row]};
     }
     record.time_s.push_back(table.first_s + row / table.rate_hz);
     record.force.push_back(force);
@@ -362,23 +361,20 @@ Result<SensorRecord> FromTable(const SensorChoice& choice) {
 }
 
 // The error for files that hold more than a push.
-Error WhichColumn(const SensorChoice& choice, MotionFormat format) {
+Error ColumnError(const SensorChoice& choice, MotionFormat format) {
   std::vector<std::string> names;
   if (format == MotionFormat::kC3d) {
-    const Result<C3dFile> file = ReadC3d(choice.file);
-    if (!file.ok()) return file.error();
-    names = ChannelNames(file.value());
-    for (std::size_t i = 0; i < file.value().platforms.size(); ++i) {
-      names.push_back(kPlatform + std::to_string(i + 1));
+    const C3dFile file = OrThrow(ReadC3d(choice.file));
+    names = ChannelNames(file);
+    for (std::size_t i = 0; i < file.platforms.size(); ++i) {
+      names.push_back(StrCat(kPlatform, i + 1));
     }
   } else {
-    const Result<NumericTable> table = ReadNumericTable(choice.file, TableFormat::kStorage, {});
-    if (!table.ok()) return table.error();
-    names = table.value().names;
+    names = OrThrow(ReadNumericTable(choice.file, TableFormat::kStorage)).names;
   }
-  return Error{"select the push by --sensor_column (in a list of sensors by \"column\"): it has " +
-                   (names.empty() ? "none" : ListOfNames(names)),
-               choice.file};
+  return {"select the push by --sensor_column (in a list of sensors by \"column\"): it has " +
+              (names.empty() ? "none" : ListOfNames(names)),
+          choice.file};
 }
 
 // The mean height of the pressure, weighted by the force, along the file's axis that points up.
@@ -392,44 +388,48 @@ std::optional<double> HeightOfPressure(const PlatformRecord& platform, const Eig
   return weight > 0.0 ? std::optional<double>(sum / weight) : std::nullopt;
 }
 
-Result<SensorRecord> FromC3d(const SensorChoice& choice, const Eigen::Vector3d& up,
-                             std::vector<std::string>* warnings) {
-  const Result<C3dFile> read = ReadC3d(choice.file);
-  if (!read.ok()) return read.error();
-  const C3dFile& file = read.value();
+void TakePlatform(const C3dFile& file, const SensorChoice& choice, const Eigen::Vector3d& up,
+                  SensorRecord* record, std::vector<std::string>* warnings) {
+  std::int64_t number = 0;
+  if (!ParseInteger(choice.column.substr(sizeof kPlatform - 1), &number) || number < 1 ||
+      number > 1000) {
+    throw Error{Quoted(choice.column) +
+                " is not a platform; it must be platform:1 or another number"};
+  }
+  const std::optional<LengthUnit> unit = FromName<LengthUnit>(file.point_unit);
+  if (!unit && !Trimmed(file.point_unit).empty()) {
+    throw Error{"its lengths are in " + Quoted(file.point_unit) +
+                    ", which is unknown, so the height of a platform is unknown too",
+                choice.file};
+  }
+  PlatformRecord platform = OrThrow(
+      EvaluatePlatform(file, static_cast<int>(number) - 1, unit.value_or(LengthUnit::kMillimetre)));
+  if (!platform.outside.empty()) platform.warnings.push_back(platform.outside);
+  if (warnings != nullptr) {
+    warnings->insert(warnings->end(), platform.warnings.begin(), platform.warnings.end());
+  }
+  record->is_vector = true;
+  record->height_m = HeightOfPressure(platform, up);
+  record->force = std::move(platform.force);
+}
+
+SensorRecord FromC3d(const SensorChoice& choice, const Eigen::Vector3d& up,
+                     std::vector<std::string>* warnings) {
+  const C3dFile file = OrThrow(ReadC3d(choice.file));
   SensorRecord record;
   if (choice.column.rfind(kPlatform, 0) == 0) {
-    std::int64_t number = 0;
-    if (!ParseInteger(choice.column.substr(sizeof kPlatform - 1), &number) || number < 1 ||
-        number > 1000) {
-      return Error{Quoted(choice.column) +
-                   " is not a platform; it must be platform:1 or another number"};
-    }
-    const std::optional<LengthUnit> unit = FromName<LengthUnit>(file.point_unit);
-    if (!unit && !Trimmed(file.point_unit).empty()) {
-      return Error{"its lengths are in " + Quoted(file.point_unit) +
-                       ", which is unknown, so the height of a platform is unknown too",
-                   choice.file};
-    }
-    const Result<PlatformRecord> platform = EvaluatePlatform(
-        file, static_cast<int>(number) - 1, unit.value_or(LengthUnit::kMillimetre));
-    if (!platform.ok()) return platform.error();
-    const std::vector<std::string>& told = platform.value().warnings;
-    if (warnings != nullptr) warnings->insert(warnings->end(), told.begin(), told.end());
-    record.is_vector = true;
-    record.force = platform.value().force;
-    record.height_m = HeightOfPressure(platform.value(), up);
+    TakePlatform(file, choice, up, &record, warnings);
   } else {
     const int channel = file.FindAnalog(choice.column);
     if (channel < 0) {
-      return UnknownNameError(choice.file, "analog channel", ChannelNames(file), choice.column);
+      throw UnknownNameError(choice.file, "analog channel", ChannelNames(file), choice.column);
     }
     const std::string& unit = file.analog[channel].unit;
     const std::optional<double> newtons = choice.gain || unit.empty() ? 1.0 : NewtonsIn(unit);
     if (!newtons) {
-      return Error{choice.column + " is in " + Quoted(unit) +
-                       " (ANALOG:UNITS): give its \"gain\", in N per unit, in a list of sensors",
-                   choice.file};
+      throw Error{choice.column + " is in " + Quoted(unit) +
+                      " (ANALOG:UNITS): give its \"gain\", in N per unit, in a list of sensors",
+                  choice.file};
     }
     for (double sample : file.analog[channel].samples) {
       record.force.push_back({*newtons * sample, 0.0, 0.0});
@@ -437,25 +437,10 @@ Result<SensorRecord> FromC3d(const SensorChoice& choice, const Eigen::Vector3d& 
   }
   for (std::size_t i = 0; i < record.force.size(); ++i) {
     record.time_s.push_back(static_cast<double>(i) / file.analog_rate_hz);
-    if (!record.force[i].allFinite()) {
-      return Error{choice.column + " is not finite at sample " + std::to_string(i), choice.file};
-    }
+    if (record.force[i].allFinite()) continue;
+    throw Error{StrCat(choice.column, " is not finite at sample ", i), choice.file};
   }
   return record;
-}
-
-using Json = nlohmann::ordered_json;
-
-void ReadDirection(JsonFields* fields, SensorChoice* sensor) {
-  if (!fields->Has("direction")) return;
-  const Json& value = fields->At("direction");
-  bool numbers = value.is_array() && value.size() == 3;
-  for (std::size_t i = 0; numbers && i < 3; ++i) numbers = value[i].is_number();
-  if (!numbers) {
-    fields->Fail("direction", "must be [x, y, z], as in [1, 0, 0], not " + Shown(value));
-    return;
-  }
-  for (int i = 0; i < 3; ++i) sensor->direction[i] = value[i].get<double>();
 }
 
 constexpr double kLeastRest = 0.1;    // s before the pull
@@ -474,7 +459,7 @@ Eigen::Vector3d ReadingOf(const SensorRecord& record, int samples, double* noise
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
     for (int i = 0; i < samples; ++i) values.push_back(record.force[i][axis]);
-    reading[axis] = Median(values);
+    reading[axis] = UpperMedian(values);
     double squares = 0.0;
     for (double value : values) squares += (value - reading[axis]) * (value - reading[axis]);
     *noise = std::max(*noise, std::sqrt(squares / samples));
@@ -509,68 +494,74 @@ void FillFromMotion(const RecordedPerson& person, SensorChoice* choice) {
 }
 
 Result<SensorRecord> ReadSensor(const SensorChoice& choice, std::vector<std::string>* warnings) {
-  const Result<Eigen::Matrix3d> rotation = AxesRotation(
-      choice.up.empty() ? "z" : choice.up, choice.forward.empty() ? "x" : choice.forward);
-  if (!rotation.ok()) return rotation.error();
-  const MotionFormat format = MotionFormatOfFile(choice.file).value_or(MotionFormat::kCsv);
-  const bool several = format == MotionFormat::kC3d || format == MotionFormat::kStorage;
-  if (choice.column.empty() && several) return WhichColumn(choice, format);
-  const double gain = choice.gain.value_or(1.0);
-  if (!std::isfinite(gain) || gain == 0.0) {
-    return Error{"the gain of a sensor must be a number of N per unit other than 0"};
-  }
-  Result<SensorRecord> record = format == MotionFormat::kC3d
-                                    ? FromC3d(choice, rotation.value().row(2).transpose(), warnings)
-                                : choice.column.empty() ? ReadSensorCsv(choice.file)
-                                                        : FromTable(choice);
-  if (!record.ok()) return record;
-  record.value().file = choice.file;
-  if (choice.zero_n.value_or(0.0) != 0.0 && record.value().is_vector) {
-    return Error{"an offset can only be subtracted from a sensor with a single axis", choice.file};
-  }
-  for (Eigen::Vector3d& force : record.value().force) {
-    force *= gain;
-    force.x() -= choice.zero_n.value_or(0.0);
-    if (record.value().is_vector) force = rotation.value() * force;
-  }
-  if (!choice.zero_n) SubtractRest(&record.value());
-  return record;
+  return Caught([&] {
+    const Eigen::Matrix3d rotation = AxesGiven(choice.up, choice.forward);
+    const MotionFormat format = MotionFormatOfFile(choice.file).value_or(MotionFormat::kCsv);
+    const bool several = format == MotionFormat::kC3d || format == MotionFormat::kStorage;
+    if (choice.column.empty() && several) throw ColumnError(choice, format);
+    const double gain = choice.gain.value_or(1.0), zero_n = choice.zero_n.value_or(0.0);
+    if (!std::isfinite(gain) || gain == 0.0) {
+      throw Error{"the gain of a sensor must be a number of N per unit other than 0"};
+    }
+    SensorRecord record = format == MotionFormat::kC3d
+                              ? FromC3d(choice, rotation.row(2).transpose(), warnings)
+                          : choice.column.empty() ? OrThrow(ReadSensorCsv(choice.file))
+                                                  : FromTable(choice);
+    record.file = choice.file;
+    if (zero_n != 0.0 && record.is_vector) {
+      throw Error{"an offset can only be subtracted from a sensor with a single axis", choice.file};
+    }
+    for (Eigen::Vector3d& force : record.force) {
+      force *= gain;
+      force.x() -= zero_n;
+      if (record.is_vector) force = rotation * force;
+    }
+    if (!choice.zero_n) SubtractRest(&record);
+    return record;
+  });
 }
 
 Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path) {
-  const Result<JsonDocument> document = ReadJsonDocument(path);
-  if (!document.ok()) return document.error();
-  const Json& content = document.value().content;
-  if (!content.is_array() || content.empty()) {
-    return document.value().ErrorAt("", "a list of sensors is expected, [{\"file\": ...}, ...]");
-  }
-  std::vector<SensorChoice> sensors;
-  for (std::size_t i = 0; i < content.size(); ++i) {
-    JsonFields fields(document.value(), content[i], "/" + std::to_string(i),
-                      "sensor " + std::to_string(i));
-    SensorChoice sensor;
-    sensor.file = ResolvePath(path, fields.Text("file", "the name of a file with forces"));
-    sensor.column = fields.OptionalText("column", "");
-    if (fields.Has("gain")) sensor.gain = fields.Number("gain", "the N per unit");
-    sensor.up = fields.OptionalText("up", "");
-    sensor.forward = fields.OptionalText("forward", "");
-    ReadDirection(&fields, &sensor);
-    sensor.height_fraction = fields.OptionalNumber("height", "a fraction of the rod", 1.0);
-    if (fields.Has("height_m")) sensor.height_m = fields.Number("height_m", "a height in m");
-    if (fields.Has("height") && fields.Has("height_m")) {
-      fields.Fail("height", "is given together with height_m; give one of them");
+  return Caught([&] {
+    const JsonDocument document = OrThrow(ReadJsonDocument(path));
+    if (!document.content.is_array() || document.content.empty()) {
+      throw document.ErrorAt("", "a list of sensors is expected, [{\"file\": ...}, ...]");
     }
-    if (fields.Has("start")) sensor.start_s = fields.Number("start", "its clock at frame 0 in s");
-    sensor.idle_force = fields.OptionalNumber("idle_force", "a force in N", 0.0);
-    if (fields.Has("zero")) sensor.zero_n = fields.Number("zero", "what it reads at rest in N");
-    if (!fields.error() && !(sensor.idle_force >= 0.0)) {
-      fields.Fail("idle_force", "must be a force of at least 0 N");
+    std::vector<SensorChoice> sensors;
+    for (const auto& item : document.content) {
+      const std::string index = std::to_string(sensors.size());
+      JsonFields fields(document, item, "/" + index, "sensor " + index);
+      SensorChoice& sensor = sensors.emplace_back();
+      sensor.file = ResolvePath(path, fields.Text("file", "the name of a file with forces"));
+      sensor.column = fields.OptionalText("column", "");
+      sensor.gain = fields.NumberIfAny("gain", "the N per unit");
+      sensor.up = fields.OptionalText("up", "");
+      sensor.forward = fields.OptionalText("forward", "");
+      if (fields.Has("direction")) {
+        const auto xyz = ListOf<double>(fields.At("direction"));
+        if (xyz && xyz->size() == 3) {
+          sensor.direction = Eigen::Vector3d(xyz->data());
+        } else {
+          fields.Fail("direction",
+                      "must be [x, y, z], as in [1, 0, 0], not " + Shown(fields.At("direction")));
+        }
+      }
+      sensor.height_fraction = fields.OptionalNumber("height", "a fraction of the rod", 1.0);
+      sensor.height_m = fields.NumberIfAny("height_m", "a height in m");
+      if (fields.Has("height") && fields.Has("height_m")) {
+        fields.Fail("height", "is given together with height_m; give one of them");
+      }
+      sensor.start_s = fields.NumberIfAny("start", "its clock at frame 0 in s");
+      sensor.idle_force = fields.OptionalNumber("idle_force", "a force in N", 0.0);
+      sensor.zero_n = fields.NumberIfAny("zero", "what it reads at rest in N");
+      if (!fields.error() && !(sensor.idle_force >= 0.0)) {
+        fields.Fail("idle_force", "must be a force of at least 0 N");
+      }
+      fields.OnlyAsked();
+      OrThrow(fields.error());
     }
-    fields.OnlyAsked();
-    if (fields.error()) return *fields.error();
-    sensors.push_back(sensor);
-  }
-  return sensors;
+    return sensors;
+  });
 }
 
 void SubtractRest(SensorRecord* record) {

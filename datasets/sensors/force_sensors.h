@@ -23,7 +23,7 @@ struct SensorChoice {
   // or platform:1, counted from 1.
   std::string column;
   // N per unit of the column; negative where it counts the other way. Unset: 1, or the N in the
-  // unit that a C3D file gives its channel.
+  // unit that a C3D file gives its channel, or the name of a column ends with ("Force (kN)").
   std::optional<double> gain;
   // Reading of a sensor of one number at rest, N; unset: what it reads before the pull.
   std::optional<double> zero_n;
@@ -36,6 +36,11 @@ struct SensorChoice {
   std::optional<double> start_s;  // its clock at frame 0; unset: 0
   double idle_force = 0.0;        // N
 };
+
+// Newtons, or newton metres, in one of a file's unit ("kN", "N.mm"); nullopt: it is no such unit.
+std::optional<double> NewtonsIn(std::string_view unit, bool moment = false);
+// Newtons in the unit of a column by its name, "Force (kN)"; 1 where it names none.
+double NewtonsInColumn(const std::string& name);
 
 // Where the sensor was recorded in the file of a person's motion, the choice takes what it lacks
 // from that file: clock at frame 0 and axes.
@@ -58,7 +63,7 @@ void SubtractRest(SensorRecord* record);
 // Files are relative to the list. Also up and forward.
 Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path);
 
-// What a force platform of a C3D file measured: force, centre of pressure, free moment.
+// Measurements of a force platform of a C3D file: force, centre of pressure, free moment.
 //
 // The four types of the C3D manual differ in what the channels are:
 //   1  Fx Fy Fz Px Py Tz          centre of pressure measured

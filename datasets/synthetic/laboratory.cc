@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/point_motion.h"
@@ -40,16 +41,8 @@ struct WinterSegments {
   double weight;                     // N
 };
 
-struct TwoAngles {
-  double legs = 0.0, trunk = 0.0;
-};
-TwoAngles operator+(TwoAngles a, TwoAngles b) { return {a.legs + b.legs, a.trunk + b.trunk}; }
-TwoAngles operator*(double s, TwoAngles a) { return {s * a.legs, s * a.trunk}; }
-struct Moving {
-  TwoAngles q, v;
-};
-Moving operator+(Moving a, Moving b) { return {a.q + b.q, a.v + b.v}; }
-Moving operator*(double s, Moving a) { return {s * a.q, s * a.v}; }
+// Angles of legs and trunk, rad, and their rates; or the slopes of all of them.
+using Moving = Eigen::Vector4d;
 
 struct Swing {
   double from = 0.0, to = 0.0, begin = -1.0;  // m, s
@@ -70,12 +63,12 @@ class Walker {
  public:
   Walker(const LaboratoryPerson& person, const LaboratoryPush& push, int substeps)
       : person_(person), body_(person), push_(push), h_(1.0 / (kLaboratoryHz * substeps)) {
-    now_.q.legs = person.lean_rad;
+    now_ = {person.lean_rad, 0.0, 0.0, 0.0};
     tonic_ = -(body_.m1 * body_.c1 + body_.m2 * body_.l) * kG * std::sin(person.lean_rad);
   }
 
   double time() const { return h_ * static_cast<double>(history_.size()); }
-  bool Falls() const { return std::abs(now_.q.legs) > 0.7 || std::abs(now_.q.trunk) > 1.2; }
+  bool Falls() const { return std::abs(now_[0]) > 0.7 || std::abs(now_[1]) > 1.2; }
   void SetSway(double torque) { sway_ = torque; }
 
   void Advance() {
@@ -89,8 +82,8 @@ class Walker {
   void Decide(LaboratoryTrial* trial) {
     const double t = time();
     const auto [back, front] = Support(t);
-    const double mass = body_.m1 + body_.m2, x = Middle(t), place = CentreOfMass(now_.q, x);
-    const double speed = (CentreOfMass(now_.q + 1e-6 * now_.v, x) - place) / 1e-6;
+    const double mass = body_.m1 + body_.m2, x = Middle(t), place = CentreOfMass(now_.head<2>(), x);
+    const double speed = (CentreOfMass(now_.head<2>() + 1e-6 * now_.tail<2>(), x) - place) / 1e-6;
     const double height = (body_.m1 * body_.c1 + body_.m2 * (body_.l + body_.c2)) / mass;
     const double rate = std::sqrt(kG / height), beyond = place + speed / rate;
     lost_.push_back(beyond > front);
@@ -109,16 +102,15 @@ class Walker {
     const double t = time();
     const Moving slope = Slope(1.0, now_);  // the history ends a step before
     const double torque = AnkleTorque(1.0, now_);
-    const auto& [q, v] = now_;
     const auto part = [&](double arm, double angle, double rate, double turn) {
       return std::pair<double, double>(
           arm * (std::cos(angle) * turn - std::sin(angle) * rate * rate),
           -arm * (std::sin(angle) * turn + std::cos(angle) * rate * rate));
     };
-    const auto legs = part(1.0, q.legs, v.legs, slope.v.legs);
-    const auto trunk = part(body_.c2, q.trunk, v.trunk, slope.v.trunk);
+    const auto legs = part(1.0, now_[0], now_[2], slope[2]);
+    const auto trunk = part(body_.c2, now_[1], now_[3], slope[3]);
     const double ground = MiddleAcceleration(t);
-    LaboratorySample s{q.legs, q.trunk};
+    LaboratorySample s{now_[0], now_[1]};
     s.push_N = push_.ForceAt(t);
     for (int foot : {0, 1}) {
       s.foot[foot] = Foot(foot, t);
@@ -141,9 +133,9 @@ class Walker {
   double MiddleAcceleration(double t) const {
     return 0.5 * (swing_[0].Acceleration(t) + swing_[1].Acceleration(t));
   }
-  double CentreOfMass(const TwoAngles& q, double x) const {
-    return x + ((body_.m1 * body_.c1 + body_.m2 * body_.l) * std::sin(q.legs) +
-                body_.m2 * body_.c2 * std::sin(q.trunk)) /
+  double CentreOfMass(const Eigen::Vector2d& angles, double x) const {
+    return x + ((body_.m1 * body_.c1 + body_.m2 * body_.l) * std::sin(angles[0]) +
+                body_.m2 * body_.c2 * std::sin(angles[1])) /
                    (body_.m1 + body_.m2);
   }
   // Hindmost and foremost point of the feet that stand.
@@ -160,7 +152,7 @@ class Walker {
   // s steps of h after the last one in the history, less the delay; at rest before.
   Moving Late(double s) const {
     const double at = static_cast<double>(history_.size()) - 1.0 + s - person_.delay_s / h_;
-    if (at <= 0.0) return {{person_.lean_rad, 0.0}, {}};
+    if (at <= 0.0) return {person_.lean_rad, 0.0, 0.0, 0.0};
     const size_t i = std::min(static_cast<size_t>(at), history_.size() - 1);
     const size_t next = std::min(i + 1, history_.size() - 1);
     const double f = at - static_cast<double>(i);
@@ -171,9 +163,9 @@ class Walker {
     const double t = time() + (s - 1.0) * h_;
     const Moving late = Late(s);
     const LaboratoryPerson::Joint& k = person_.ankle;
-    const double torque = tonic_ + sway_ - k.active * (late.q.legs - person_.lean_rad) -
-                          k.active_damping * late.v.legs -
-                          k.passive * (m.q.legs - person_.lean_rad) - k.passive_damping * m.v.legs;
+    const double torque = tonic_ + sway_ - k.active * (late[0] - person_.lean_rad) -
+                          k.active_damping * late[2] - k.passive * (m[0] - person_.lean_rad) -
+                          k.passive_damping * m[2];
     const auto [back, front] = Support(t);
     const double x = Middle(t);
     return std::clamp(torque, -body_.weight * (front - x), -body_.weight * (back - x));
@@ -183,22 +175,22 @@ class Walker {
     const double t = time() + (s - 1.0) * h_;
     const Moving late = Late(s);
     const LaboratoryPerson::Joint& k = person_.hip;
-    const double hip = -k.active * late.q.trunk - k.active_damping * late.v.trunk -
-                       k.passive * (m.q.trunk - m.q.legs + person_.lean_rad) -
-                       k.passive_damping * (m.v.trunk - m.v.legs);
+    const double hip = -k.active * late[1] - k.active_damping * late[3] -
+                       k.passive * (m[1] - m[0] + person_.lean_rad) -
+                       k.passive_damping * (m[3] - m[2]);
     const double ankle = AnkleTorque(s, m), force = push_.ForceAt(t),
                  ground = MiddleAcceleration(t);
     const double m1 = body_.m1, m2 = body_.m2, c1 = body_.c1, c2 = body_.c2, l = body_.l;
-    const double apart = m.q.legs - m.q.trunk, across = m2 * l * c2;
+    const double apart = m[0] - m[1], across = m2 * l * c2;
     const double a = m1 * c1 * c1 + body_.i1 + m2 * l * l, b = across * std::cos(apart),
                  d = m2 * c2 * c2 + body_.i2;
-    const double legs =
-        (m1 * c1 + m2 * l) * (kG * std::sin(m.q.legs) - ground * std::cos(m.q.legs)) + ankle - hip +
-        force * l * std::cos(m.q.legs) - across * std::sin(apart) * m.v.trunk * m.v.trunk;
-    const double trunk = m2 * c2 * (kG * std::sin(m.q.trunk) - ground * std::cos(m.q.trunk)) + hip +
-                         across * std::sin(apart) * m.v.legs * m.v.legs;
+    const double legs = (m1 * c1 + m2 * l) * (kG * std::sin(m[0]) - ground * std::cos(m[0])) +
+                        ankle - hip + force * l * std::cos(m[0]) -
+                        across * std::sin(apart) * m[3] * m[3];
+    const double trunk = m2 * c2 * (kG * std::sin(m[1]) - ground * std::cos(m[1])) + hip +
+                         across * std::sin(apart) * m[2] * m[2];
     const double det = a * d - b * b;
-    return {m.v, {(d * legs - b * trunk) / det, (a * trunk - b * legs) / det}};
+    return {m[2], m[3], (d * legs - b * trunk) / det, (a * trunk - b * legs) / det};
   }
 
   LaboratoryPerson person_;
@@ -221,37 +213,30 @@ constexpr double kQuotedMass = 85.0, kQuotedRod = 0.95;  // kg, m
 
 struct Made {
   std::string id, setting, magnitude;
-  int person = 0;
-  LaboratoryPush push;
   LaboratoryTrial trial;
 };
 
 // Trials of the wanted kind: who steps where nobody should, or falls, is pulled anew.
-Result<Made> DrawTrial(const LaboratoryPerson& person, bool steps, int number, double seconds,
-                       Random* random) {
+Made DrawTrial(const LaboratoryPerson& person, bool steps, int number, double seconds,
+               Random* random) {
   for (int attempt = 0; attempt < 50; ++attempt) {
-    Made made;
     const double speed = steps ? random->Uniform(0.65, 0.9) : random->Uniform(0.08, 0.2);
-    made.push.start_s = random->Uniform(0.4, 0.7);
-    made.push.duration_s = random->Uniform(0.2, 0.4);
-    made.push.peak_N = speed * person.mass_kg * M_PI / (2.0 * made.push.duration_s) *
-                       (!steps && number % 2 == 1 ? -0.7 : 1.0);
+    LaboratoryPush push;
+    push.start_s = random->Uniform(0.4, 0.7);
+    push.duration_s = random->Uniform(0.2, 0.4);
+    push.peak_N = speed * person.mass_kg * M_PI / (2.0 * push.duration_s) *
+                  (!steps && number % 2 == 1 ? -0.7 : 1.0);
     Result<LaboratoryTrial> trial =
-        SimulateLaboratoryTrial(person, made.push, seconds, kSway, random->Fork());
+        SimulateLaboratoryTrial(person, push, seconds, kSway, random->Fork());
     if (!trial.ok() || trial.value().steps.empty() == steps) continue;
-    made.setting = steps ? "stepping" : "standing";
-    made.magnitude = steps ? "strong" : "weak";
-    made.trial = std::move(trial.value());
-    return made;
+    return {"", steps ? "stepping" : "standing", steps ? "strong" : "weak",
+            std::move(trial.value())};
   }
-  return Error{"a person of these gains neither stands nor steps; try another seed"};
+  throw Error{"a person of these gains neither stands nor steps; try another seed"};
 }
 
 // Files need no more decimals than instruments give.
 double ToDecimals(double value, double per_unit) { return std::round(per_unit * value) / per_unit; }
-
-// Forward, up, right.
-Eigen::Vector3d Point(double x, double up, double right) { return {x, up, right}; }
 
 PointMotion Markers(const LaboratoryPerson& person, const LaboratoryTrial& trial, Random* noise) {
   PointMotion motion;
@@ -265,17 +250,17 @@ PointMotion Markers(const LaboratoryPerson& person, const LaboratoryTrial& trial
     const LaboratorySample& s = trial.samples[i];
     const double hip_x = 0.5 * (s.foot[0] + s.foot[1]) + person.RodLength() * std::sin(s.legs);
     const double hip_up = ankle + person.RodLength() * std::cos(s.legs);
-    std::vector<Eigen::Vector3d> at;
+    std::vector<Eigen::Vector3d> at;    // forward, up, right
     for (double ahead : {0.1, -0.1}) {  // the pelvis turns with the trunk
       for (double side : {-kPelvis, kPelvis}) {
-        at.push_back(
-            Point(hip_x + ahead * std::cos(s.trunk), hip_up - ahead * std::sin(s.trunk), side));
+        at.emplace_back(hip_x + ahead * std::cos(s.trunk), hip_up - ahead * std::sin(s.trunk),
+                        side);
       }
     }
     for (const auto& [ahead, up] : {std::pair{0.0, ankle}, {toe, 0.03}, {-heel, 0.03}}) {
       for (int foot : {0, 1}) {
-        at.push_back(Point(s.foot[foot] + ahead, up + s.foot_lift[foot],
-                           foot == 0 ? -kFootAside : kFootAside));
+        at.emplace_back(s.foot[foot] + ahead, up + s.foot_lift[foot],
+                        foot == 0 ? -kFootAside : kFootAside);
       }
     }
     for (size_t k = 0; k < at.size(); ++k) {
@@ -390,19 +375,6 @@ nlohmann::ordered_json QuotedTruth(const std::vector<LaboratoryPerson>& people) 
           {"passive_stiffness", share}};
 }
 
-MaybeError WriteTrial(const std::string& folder, const Made& made, const LaboratoryPerson& person,
-                      Random* noise) {
-  for (const MaybeError& failed :
-       {WriteTrc(folder + "/motion/" + made.id + ".trc", Markers(person, made.trial, noise)),
-        WriteNumericTable(folder + "/plates/" + made.id + ".mot", TableFormat::kStorage,
-                          Plates(made.trial, noise)),
-        WriteNumericTable(folder + "/force/" + made.id + ".csv", TableFormat::kCsv,
-                          LoadCell(made.trial, noise))}) {
-    if (failed) return failed;
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 double LaboratoryPush::ForceAt(double t) const {
@@ -457,36 +429,38 @@ std::vector<LaboratoryPerson> DrawLaboratoryPeople(const LaboratoryOptions& opti
 }
 
 MaybeError WriteLaboratoryStudy(const std::string& folder, const LaboratoryOptions& options) {
-  for (const char* sub : {"/motion", "/plates", "/force"}) {
-    if (MaybeError failed = MakeFolder(folder + sub)) return failed;
-  }
-  const std::vector<LaboratoryPerson> people = DrawLaboratoryPeople(options);
-  Random random(options.seed + 1), noise(options.seed + 2);
-  nlohmann::ordered_json manifest, truth;
-  manifest["schema"] = "pushid-manifest/1";
-  truth["schema"] = "pushid-truth/1";
-  truth["synthetic"]["truth"] = QuotedTruth(people);
-  for (int i = 0; i < options.people; ++i) {
-    const std::string subject = (i < 9 ? "S0" : "S") + std::to_string(i + 1);
-    truth["people"][subject] = TruthOf(people[i]);
-    for (int k = 0; k < options.standing + options.stepping; ++k) {
-      Result<Made> made = DrawTrial(people[i], k >= options.standing, k, options.seconds, &random);
-      if (!made.ok()) return made.error();
-      made.value().id = subject + "_" + made.value().magnitude + "_" + std::to_string(k + 1);
-      if (MaybeError failed = WriteTrial(folder, made.value(), people[i], &noise)) return failed;
-      manifest["recordings"].push_back(TrialEntry(made.value(), people[i]));
-      for (const LaboratoryStep& step : made.value().trial.steps) {
-        truth["steps"][made.value().id].push_back({{"foot", step.foot == 0 ? "left" : "right"},
-                                                   {"lift_off_s", step.lift_off_s},
-                                                   {"landing_s", step.landing_s},
-                                                   {"length_m", step.length_m}});
+  return Caught([&] {
+    for (const char* sub : {"/motion", "/plates", "/force"}) OrThrow(MakeFolder(folder + sub));
+    const std::vector<LaboratoryPerson> people = DrawLaboratoryPeople(options);
+    Random random(options.seed + 1), noise(options.seed + 2);
+    nlohmann::ordered_json manifest, truth;
+    manifest["schema"] = "pushid-manifest/1";
+    truth["schema"] = "pushid-truth/1";
+    truth["synthetic"]["truth"] = QuotedTruth(people);
+    for (int i = 0; i < options.people; ++i) {
+      const std::string subject = StrCat(i < 9 ? "S0" : "S", i + 1);
+      truth["people"][subject] = TruthOf(people[i]);
+      for (int k = 0; k < options.standing + options.stepping; ++k) {
+        Made made = DrawTrial(people[i], k >= options.standing, k, options.seconds, &random);
+        const std::string& id = made.id = StrCat(subject, "_", made.magnitude, "_", k + 1);
+        OrThrow(
+            WriteTrc(folder + "/motion/" + id + ".trc", Markers(people[i], made.trial, &noise)));
+        OrThrow(WriteNumericTable(folder + "/plates/" + id + ".mot", TableFormat::kStorage,
+                                  Plates(made.trial, &noise)));
+        OrThrow(WriteNumericTable(folder + "/force/" + id + ".csv", TableFormat::kCsv,
+                                  LoadCell(made.trial, &noise)));
+        manifest["recordings"].push_back(TrialEntry(made, people[i]));
+        for (const LaboratoryStep& step : made.trial.steps) {
+          truth["steps"][id].push_back({{"foot", step.foot == 0 ? "left" : "right"},
+                                        {"lift_off_s", step.lift_off_s},
+                                        {"landing_s", step.landing_s},
+                                        {"length_m", step.length_m}});
+        }
       }
     }
-  }
-  if (MaybeError failed = WriteFileAtomically(folder + "/truth.json", truth.dump(1) + "\n")) {
-    return failed;
-  }
-  return WriteFileAtomically(folder + "/manifest.json", manifest.dump(1) + "\n");
+    OrThrow(WriteJson(folder + "/truth.json", truth, 1));
+    OrThrow(WriteJson(folder + "/manifest.json", manifest, 1));
+  });
 }
 
 }  // namespace pushid

@@ -84,23 +84,21 @@ std::string Clip(const StickAction& action, int frames, Random* random) {
 }  // namespace
 
 MaybeError WriteSyntheticClips(const std::string& folder, const SyntheticClipOptions& options) {
-  if (MaybeError error = MakeFolder(folder)) return error;
-  const std::filesystem::path root(folder);
-  if (MaybeError error = WriteFileAtomically((root / "skeleton.json").string(), kStickFigure)) {
-    return error;
-  }
-  Random random(options.seed);
-  for (const StickAction& action : kActions) {
-    for (int i = 1; i <= options.clips + 1; ++i) {
-      const std::filesystem::path place =
-          root / (i > options.clips ? "test" : "train") / action.name;
-      if (MaybeError error = MakeFolder(place.string())) return error;
-      const std::string name = std::string(action.name) + "_" + std::to_string(i) + ".txt";
-      const std::string clip = Clip(action, options.frames, &random);
-      if (MaybeError error = WriteFileAtomically((place / name).string(), clip)) return error;
+  return Caught([&] {
+    const std::filesystem::path root(folder);
+    OrThrow(MakeFolder(folder));
+    OrThrow(WriteFileAtomically((root / "skeleton.json").string(), kStickFigure));
+    Random random(options.seed);
+    for (const StickAction& action : kActions) {
+      for (int i = 1; i <= options.clips + 1; ++i) {
+        const std::string name = StrCat(std::string(action.name), "_", i, ".txt");
+        const std::string file =
+            (root / (i > options.clips ? "test" : "train") / action.name / name).string();
+        OrThrow(MakeFolderOf(file));
+        OrThrow(WriteFileAtomically(file, Clip(action, options.frames, &random)));
+      }
     }
-  }
-  return std::nullopt;
+  });
 }
 
 namespace {
@@ -112,20 +110,23 @@ constexpr int kSpine = 1, kTalkingNeck = 4, kTalkersRightArm = 7, kTalkersRightE
               kTalkersLeftElbow = 12;  // joints of the synthetic skeleton
 constexpr LengthUnit kTurnsUnit = LengthUnit::kMillimetre;
 constexpr double kDegrees = 180.0 / M_PI;
+constexpr double kTurnsHz = 60.0, kTurnSeconds = 2.0, kPauseSeconds = 1.0;
+constexpr double kPauseShare = 0.4;                            // of turns that end in a pause
+constexpr double kTurnEnds = 1.0 / (kTurnSeconds * kTurnsHz);  // a frame
+constexpr double kPauseEnds = 1.0 / (kPauseSeconds * kTurnsHz);
 
 // The speaker at each frame.
-std::vector<int> Speakers(const SyntheticTurnsOptions& o, Random* random) {
-  const double end = 1.0 / (o.turn_s * o.fps), begin = 1.0 / (o.pause_s * o.fps);
-  const double pausing = end * o.pause_share / (end * o.pause_share + begin);
+std::vector<int> Speakers(int frames, Random* random) {
+  constexpr double kPausing = kTurnEnds * kPauseShare / (kTurnEnds * kPauseShare + kPauseEnds);
   const auto any = [random](int count) { return static_cast<int>(random->Unit() * count); };
-  int speaker = random->Unit() < pausing ? kNobody : any(kTalkers);
+  int speaker = random->Unit() < kPausing ? kNobody : any(kTalkers);
   std::vector<int> speakers;
-  for (int t = 0; t < o.frames; ++t) {
+  for (int t = 0; t < frames; ++t) {
     speakers.push_back(speaker);
     if (speaker == kNobody) {
-      if (random->Unit() < begin) speaker = any(kTalkers);
-    } else if (random->Unit() < end) {
-      const bool pauses = random->Unit() < o.pause_share;
+      if (random->Unit() < kPauseEnds) speaker = any(kTalkers);
+    } else if (random->Unit() < kTurnEnds) {
+      const bool pauses = random->Unit() < kPauseShare;
       speaker = pauses ? kNobody : (speaker + 1 + any(kTalkers - 1)) % kTalkers;
     }
   }
@@ -149,26 +150,24 @@ std::vector<Talker> DrawTalkers(int recording, Random* random) {
     const double mass = std::round(10.0 * random->Uniform(55.0, 95.0)) / 10.0;
     const SyntheticSkeleton skeleton(random->Uniform(0.82, 1.02));
     const Eigen::Vector2d place(radius * std::cos(angle), radius * std::sin(angle));
-    talkers.push_back({"T" + std::to_string(kTalkers * recording + n + 1), mass, skeleton, place,
+    talkers.push_back({StrCat("T", kTalkers * recording + n + 1), mass, skeleton, place,
                        angle + M_PI + random->Normal(0.0, 0.05),
                        std::exp(random->Normal(0.0, 0.15))});
   }
   return talkers;
 }
 
-double Wrapped(double angle) { return std::remainder(angle, 2.0 * M_PI); }
-
 // The motion of one person, frame by frame.
 class TalkingBody {
  public:
-  TalkingBody(const Talker& who, double dt, Random* random)
-      : who_(who), dt_(dt), phase_(random->Uniform(0.0, 2.0 * M_PI)) {
-    for (int i = 0; i < kNoises; ++i) noise_.emplace_back(random, dt);
+  TalkingBody(const Talker& who, Random* random)
+      : who_(who), phase_(random->Uniform(0.0, 2.0 * M_PI)) {
+    for (int i = 0; i < kNoises; ++i) noise_.emplace_back(random, kStepSeconds);
   }
 
   // looks: direction of whom they look at, rad; appends the channels of a frame.
   void Append(double looks, bool speaks, bool listens, std::vector<double>* values) {
-    const double wanted = Wrapped(looks - who_.heading);
+    const double wanted = std::remainder(looks - who_.heading, 2.0 * M_PI);
     for (int i = 0; i < kNoises; ++i) Follow(noise_[i].Next(), 0.3, &slow_[i]);
     if (first_) head_ = wanted, shoulders_ = kShare * wanted, gesture_ = speaks ? 1.0 : 0.0;
     first_ = false;
@@ -176,7 +175,7 @@ class TalkingBody {
     Follow(kShare * wanted, 0.35, &shoulders_);
     Follow(speaks ? 1.0 : 0.0, 0.2, &gesture_);
     Follow(listens ? 1.0 : 0.0, 0.3, &nod_);
-    phase_ += 2.0 * M_PI * 1.1 * std::exp(0.2 * slow_[0]) * dt_;
+    phase_ += 2.0 * M_PI * 1.1 * std::exp(0.2 * slow_[0]) * kStepSeconds;
 
     const double theta = 0.006 * slow_[1], phi = 0.006 * slow_[2];
     const double rod = who_.skeleton.rod_length(), height = who_.skeleton.cart_height();
@@ -212,129 +211,107 @@ class TalkingBody {
 
  private:
   static constexpr int kNoises = 7;
-  static constexpr double kShare = 0.7;
+  static constexpr double kShare = 0.7, kStepSeconds = 1.0 / kTurnsHz;
 
   void Follow(double wanted, double seconds, double* value) const {
-    *value += (1.0 - std::exp(-dt_ / seconds)) * (wanted - *value);
+    *value += (1.0 - std::exp(-kStepSeconds / seconds)) * (wanted - *value);
   }
 
   const Talker& who_;
-  double dt_, phase_;
+  double phase_;
   bool first_ = true;
   double head_ = 0.0, shoulders_ = 0.0, gesture_ = 0.0, nod_ = 0.0;
   std::vector<SlowNoise> noise_;
   std::array<double, kNoises> slow_{};  // without jitter from frame to frame
 };
 
-double DirectionTo(const Talker& of, const Talker& other) {
-  const Eigen::Vector2d way = other.place - of.place;
-  return std::atan2(way.y(), way.x());
-}
-
 // The channels of everybody.
 std::vector<std::vector<double>> Move(const std::vector<Talker>& talkers,
-                                      const std::vector<int>& speakers, double fps,
-                                      Random* random) {
+                                      const std::vector<int>& speakers, Random* random) {
   constexpr double kLookSeconds = 1.0;
   std::vector<TalkingBody> bodies;
-  for (const Talker& talker : talkers) bodies.emplace_back(talker, 1.0 / fps, random);
+  for (const Talker& talker : talkers) bodies.emplace_back(talker, random);
   std::vector<std::vector<double>> values(talkers.size());
   std::array<int, kTalkers> looks_at = {1, 2, 0};
   for (const int speaker : speakers) {
     for (int n = 0; n < kTalkers; ++n) {
       if (speaker != kNobody && n != speaker) looks_at[n] = speaker;
-      if (n == speaker && random->Unit() < 1.0 / (kLookSeconds * fps)) {
+      if (n == speaker && random->Unit() < 1.0 / (kLookSeconds * kTurnsHz)) {
         looks_at[n] = kTalkers - n - looks_at[n];  // the third
       }
-      bodies[n].Append(DirectionTo(talkers[n], talkers[looks_at[n]]), n == speaker,
+      const Eigen::Vector2d way = talkers[looks_at[n]].place - talkers[n].place;
+      bodies[n].Append(std::atan2(way.y(), way.x()), n == speaker,
                        speaker != kNobody && n != speaker, &values[n]);
     }
   }
   return values;
 }
 
-RecordedStates StatesOfTurns(const Recording& recording, const std::vector<int>& speakers) {
-  RecordedStates states{recording.id, {}};
-  for (int n = 0; n < kTalkers; ++n) {
-    states.subjects.push_back(recording.people[n].subject_id);
-    states.people.emplace_back();
-    for (const int speaker : speakers) {
-      states.people.back().push_back(NameOf(speaker == kNobody ? TurnState::kRest
-                                            : speaker == n     ? TurnState::kSpeak
-                                                               : TurnState::kListen));
-    }
-  }
-  return states;
-}
-
-nlohmann::ordered_json TruthJson(const SyntheticTurnsOptions& o) {
+nlohmann::ordered_json TruthJson(uint64_t seed) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array(), names = rows;
-  const Eigen::Matrix3d shares = TurnTransitions(o);
+  const Eigen::Matrix3d shares = TurnTransitions();
   for (int i = 0; i < shares.rows(); ++i) {
     rows.push_back({shares(i, 0), shares(i, 1), shares(i, 2)});
   }
   for (const auto& row : Names(TurnState{})) names.push_back(row.name);
-  return {{"seed", o.seed},
+  return {{"seed", seed},
           {"turns",
-           {{"turn_s", o.turn_s},
-            {"pause_s", o.pause_s},
-            {"pause_share", o.pause_share},
+           {{"turn_s", kTurnSeconds},
+            {"pause_s", kPauseSeconds},
+            {"pause_share", kPauseShare},
             {"states", names},
             {"transitions", rows}}}};
 }
 
 }  // namespace
 
-Eigen::Matrix3d TurnTransitions(const SyntheticTurnsOptions& o) {
-  const double end = 1.0 / (o.turn_s * o.fps), begin = 1.0 / (o.pause_s * o.fps);
-  const double to_pause = end * o.pause_share, to_other = end - to_pause;
-  const double rest = to_pause / (to_pause + begin);
+Eigen::Matrix3d TurnTransitions() {
+  const double to_pause = kTurnEnds * kPauseShare, to_other = kTurnEnds - to_pause;
+  const double rest = to_pause / (to_pause + kPauseEnds);
   const double speak = (1.0 - rest) / kTalkers, listen = 2.0 * speak;
   Eigen::Matrix3d shares;
-  shares.row(0) << speak * (1.0 - end), speak * to_other, speak * to_pause;
-  shares.row(1) << listen * 0.5 * to_other, listen * (1.0 - to_pause - 0.5 * to_other),
-      listen * to_pause;
-  shares.row(2) << rest * begin / kTalkers, rest * begin * 2.0 / kTalkers, rest * (1.0 - begin);
+  shares << speak * (1.0 - kTurnEnds), speak * to_other, speak * to_pause,  //
+      listen * 0.5 * to_other, listen * (1.0 - to_pause - 0.5 * to_other), listen * to_pause,
+      rest * kPauseEnds / kTalkers, rest * kPauseEnds * 2.0 / kTalkers, rest * (1.0 - kPauseEnds);
   return shares;
 }
 
 MaybeError WriteSyntheticTurns(const std::string& folder, const SyntheticTurnsOptions& options) {
-  if (MaybeError failed = MakeFolder(folder + "/bvh")) return failed;
-  Manifest manifest;
-  manifest.length_unit = kTurnsUnit;
-  manifest.json->update(nlohmann::ordered_json{{"synthetic", TruthJson(options)}});
-  std::vector<RecordedStates> states;
-  Random seeds(options.seed);
-  for (int i = 0; i < options.recordings; ++i) {
-    Random random(seeds.Fork());
-    const std::vector<int> speakers = Speakers(options, &random);
-    const std::vector<Talker> talkers = DrawTalkers(i, &random);
-    const auto values = Move(talkers, speakers, options.fps, &random);
-    Recording recording;
-    recording.id = "turns_" + std::string(i < 9 ? "0" : "") + std::to_string(i + 1);
-    recording.labels.Set(kSettingLabel, "turns");
-    recording.fps = options.fps;
-    std::vector<std::string> files;
-    std::vector<ManifestSubject> subjects;
-    for (int n = 0; n < kTalkers; ++n) {
-      const BvhMotion motion{talkers[n].skeleton.Bvh(kTurnsUnit), 1.0 / options.fps, values[n]};
-      files.push_back("bvh/" + recording.id + "_" + std::to_string(n) + ".bvh");
-      if (MaybeError failed = WriteBvh(folder + "/" + files.back(), motion)) {
-        return failed;
+  return Caught([&] {
+    OrThrow(MakeFolder(folder + "/bvh"));
+    Manifest manifest;
+    manifest.length_unit = kTurnsUnit;
+    manifest.json->update(nlohmann::ordered_json{{"synthetic", TruthJson(options.seed)}});
+    std::vector<RecordedStates> states;
+    Random seeds(options.seed);
+    for (int i = 0; i < options.recordings; ++i) {
+      Random random(seeds.Fork());
+      const std::vector<int> speakers = Speakers(options.frames, &random);
+      const std::vector<Talker> talkers = DrawTalkers(i, &random);
+      const auto values = Move(talkers, speakers, &random);
+      ManifestRecording& entry = manifest.recordings.emplace_back();
+      entry.id = StrCat("turns_", i < 9 ? "0" : "", i + 1);
+      entry.labels.Set(kSettingLabel, "turns");
+      entry.fps = kTurnsHz;
+      entry.frames = options.frames;
+      states.push_back({entry.id, {}});
+      for (int n = 0; n < kTalkers; ++n) {
+        entry.motion.push_back(StrCat("bvh/", entry.id, "_", n, ".bvh"));
+        OrThrow(WriteBvh(folder + "/" + entry.motion.back(),
+                         {talkers[n].skeleton.Bvh(kTurnsUnit), 1.0 / kTurnsHz, values[n]}));
+        entry.subjects.push_back({talkers[n].id, talkers[n].mass_kg});
+        states.back().subjects.push_back(talkers[n].id);
+        std::vector<std::string>& symbols = states.back().people.emplace_back();
+        for (const int speaker : speakers) {
+          symbols.push_back(NameOf(speaker == kNobody ? TurnState::kRest
+                                   : speaker == n     ? TurnState::kSpeak
+                                                      : TurnState::kListen));
+        }
       }
-      subjects.push_back({talkers[n].id, talkers[n].mass_kg});
-      recording.people.emplace_back();
-      recording.people.back().subject_id = talkers[n].id;
-      recording.people.back().hip.resize(options.frames);
     }
-    ManifestRecording entry = EntryOf(recording);
-    entry.subjects = subjects;
-    entry.motion = files;
-    manifest.recordings.push_back(entry);
-    states.push_back(StatesOfTurns(recording, speakers));
-  }
-  if (MaybeError failed = WriteStates(folder + "/states.csv", states)) return failed;
-  return WriteManifest(folder + "/manifest.json", manifest);
+    OrThrow(WriteStates(folder + "/states.csv", states));
+    OrThrow(WriteManifest(folder + "/manifest.json", manifest));
+  });
 }
 
 }  // namespace pushid

@@ -50,9 +50,9 @@ MaybeError WriteSyntheticClips(const std::string& folder, const SyntheticClipOpt
 // Synthetic groups of three who stand and talk in turns, with the truth of who speaks:
 // for social states, their statistics and forecasts of groups without any push.
 //
-//   who speaks   a Markov chain from frame to frame: a turn ends with probability 1 / (turn_s fps),
-//                and then with pause_share nobody speaks, otherwise one of the other two does; a
-//                pause ends with 1 / (pause_s fps), and any of the three speaks
+//   who speaks   a Markov chain from frame to frame: a turn, of 2 s on average, ends in a pause, in
+//                which nobody speaks, with probability 0.4, otherwise one of the other two speaks;
+//                after a pause, of 1 s on average, any of the three does
 //   states       speak; listen, where somebody else speaks; rest, where nobody does. One person's
 //                are a Markov chain too, which TurnTransitions knows
 //   motion       listeners look at who speaks, who speaks looks at one of them for a second on
@@ -71,15 +71,12 @@ constexpr EnumNames<TurnState, 3> Names(TurnState) {
 
 struct SyntheticTurnsOptions {
   int recordings = 12;
-  int frames = 300;
-  double fps = 60.0;
-  double turn_s = 2.0, pause_s = 1.0;  // means
-  double pause_share = 0.4;            // of turns that end in a pause
+  int frames = 300;  // at 60 Hz
   uint64_t seed = 1;
 };
 
 // Share of one person's steps from state to state; all of them sum to 1.
-Eigen::Matrix3d TurnTransitions(const SyntheticTurnsOptions& options);
+Eigen::Matrix3d TurnTransitions();
 
 // Writes folder/manifest.json, folder/bvh/<id>_<n>.bvh and folder/states.csv, the states of people
 // (TurnState) and of the group (turn, pause); the manifest's key `synthetic` holds seed, names of

@@ -48,7 +48,10 @@ ParameterSet<double> Spread(ParameterSet<double> parameters, double sigma, Rando
   return parameters;
 }
 
-std::string TwoDigits(int number) { return (number < 10 ? "0" : "") + std::to_string(number); }
+// Neighbours' carts in a row, and everybody's place to the side, m.
+constexpr double kLeastSpacing = 0.40, kMostSpacing = 0.50, kSidewaysSigma = 0.03;
+
+std::string TwoDigits(int number) { return StrCat(number < 10 ? "0" : "", number); }
 
 // The rows of a push of peak force mass * acceleration, in the plane of `direction` (0: forwards).
 std::vector<Vector4<double>> DrawPush(const SyntheticOptions& options, const ScenePerson& person,
@@ -77,9 +80,27 @@ RolloutStatus Roll(const SyntheticOptions& options, const ModelOptions& model,
                          options.frames, &made->path, forces, nullptr, noise);
 }
 
-// The motion, driven by process noise where the truth has any.
+// The motion, driven by process noise where the truth has any. Where a push replaces other forces
+// while it lasts, its rows contain them: they are taken from a rollout in which the drawn push is
+// added to everything else.
 RolloutStatus RollDriven(const SyntheticOptions& options, Random* random,
                          SyntheticRecording* made) {
+  if (options.model.push != PushUse::kAdded && options.push_kind != PushKind::kExternal &&
+      !made->scene.pushes.empty()) {
+    ModelOptions added = options.model;
+    added.push = PushUse::kAdded;
+    ForceTrace forces;
+    const RolloutStatus status = Roll(options, added, made, &forces);
+    if (!status.ok) return status;
+    ScenePush& push = made->scene.pushes[0];
+    std::vector<Vector4<double>> rows;
+    for (int t = push.start_frame; t < std::min(push.EndFrame(), options.frames); ++t) {
+      NetForce<double> force = forces.At(t, 0);
+      if (options.push_kind == PushKind::kNetWithoutFriction) force[ForcePart::kFriction].setZero();
+      rows.push_back(force.Total());
+    }
+    push = MakeScenePush(0, push.start_frame, push.kind, rows);
+  }
   if (options.model.process_noise == ProcessNoise::kNone) return Roll(options, options.model, made);
   FrameTable<Vector4<double>> noise(options.frames, made->scene.num_people());
   for (int t = 0; t < options.frames; ++t) {
@@ -88,28 +109,6 @@ RolloutStatus RollDriven(const SyntheticOptions& options, Random* random,
     }
   }
   return Roll(options, options.model, made, nullptr, &noise);
-}
-
-// Where a push replaces other forces while it lasts, its rows must contain them. They are taken
-// from a rollout in which the drawn push is added to everything else.
-RolloutStatus AbsorbOtherForces(const SyntheticOptions& options, SyntheticRecording* made) {
-  const ModelOptions& model = options.model;
-  if (model.push == PushUse::kAdded || options.push_kind == PushKind::kExternal) return {};
-  if (made->scene.pushes.empty()) return {};
-  ModelOptions added = model;
-  added.push = PushUse::kAdded;
-  ForceTrace forces;
-  const RolloutStatus status = Roll(options, added, made, &forces);
-  if (!status.ok) return status;
-  ScenePush& push = made->scene.pushes[0];
-  std::vector<Vector4<double>> rows;
-  for (int t = push.start_frame; t < std::min(push.EndFrame(), options.frames); ++t) {
-    NetForce<double> force = forces.At(t, 0);
-    if (options.push_kind == PushKind::kNetWithoutFriction) force[ForcePart::kFriction].setZero();
-    rows.push_back(force.Total());
-  }
-  push = MakeScenePush(0, push.start_frame, push.kind, rows);
-  return {};
 }
 
 RecordedPerson ObservePerson(const SyntheticOptions& options, const SyntheticRecording& made,
@@ -196,10 +195,8 @@ void PlaceRow(const SyntheticOptions& options, const std::vector<const Subject*>
                    subject->skeleton.cart_height()};
     double y = 0.0;
     if (row.size() > 1) {
-      y = motion->Normal(0.0, options.sideways_sigma_m);
-      if (!made->scene.people.empty()) {
-        x += motion->Uniform(options.min_spacing_m, options.max_spacing_m);
-      }
+      y = motion->Normal(0.0, kSidewaysSigma);
+      if (!made->scene.people.empty()) x += motion->Uniform(kLeastSpacing, kMostSpacing);
     }
     const double theta = motion->Normal(0.0, options.lean_sigma_rad);
     const double phi = motion->Normal(0.0, options.lean_sigma_rad);
@@ -270,8 +267,6 @@ std::vector<BvhChannel> LegChannels(bool is_thigh, bool with_position) {
   return channels;
 }
 
-double Degrees(double radians) { return radians * 180.0 / M_PI; }
-
 Eigen::Matrix3d RotationXY(double about_x, double about_y) {
   return (Eigen::AngleAxisd(about_x, Eigen::Vector3d::UnitX()) *
           Eigen::AngleAxisd(about_y, Eigen::Vector3d::UnitY()))
@@ -318,20 +313,17 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
             MakeScenePush(0, options.push_start_frame, options.push_kind, rows));
       }
 
-      RolloutStatus status = AbsorbOtherForces(options, &made);
-      if (status.ok) status = RollDriven(options, &driving, &made);
+      const RolloutStatus status = RollDriven(options, &driving, &made);
       if (!status.ok) {
-        return Error{"simulated recording " + id + " leaves the model at frame " +
-                     std::to_string(status.frame) + " (" + std::string(status.quantity) +
-                     "): choose weaker pushes, firmer gains or less spread"};
+        return Error{StrCat("simulated recording ", id, " leaves the model at frame ", status.frame,
+                            " (", std::string(status.quantity),
+                            "): choose weaker pushes, firmer gains or less spread")};
       }
       Recording& recording = made.recording;
-      for (size_t n = 0; n < row.size(); ++n) {
-        recording.people.push_back(
-            ObservePerson(options, made, *row[n], static_cast<int>(n), &noise));
-      }
-      for (size_t n = 0; options.plates && n < row.size(); ++n) {
-        recording.people[n].plates = ObservePlates(options, made, static_cast<int>(n), &on_plates);
+      for (int n = 0; n < options.people_in_row; ++n) {
+        recording.people.push_back(ObservePerson(options, made, *row[n], n, &noise));
+        if (!options.plates) continue;
+        recording.people[n].plates = ObservePlates(options, made, n, &on_plates);
       }
       recording.ground = made.scene.ground.poses;
       recording.id = id;
@@ -434,28 +426,25 @@ BvhSkeleton SyntheticSkeleton::Bvh(LengthUnit unit) const {
 
 void SyntheticSkeleton::AppendFrame(const SkeletonPose& pose, LengthUnit unit,
                                     std::vector<double>* values) const {
-  const auto append = [&](const Eigen::Vector3d& v) {
+  const auto append = [values](const Eigen::Vector3d& v) {
     values->insert(values->end(), v.data(), v.data() + 3);
   };
-  const auto position = [&](const Eigen::Vector3d& metres) {
-    for (double value : {metres.x(), metres.y(), metres.z()}) {
-      values->push_back(RowOf(unit).per_metre * value);
-    }
-  };
+  const auto degrees = [](double radians) { return radians * 180.0 / M_PI; };
+  const double scale = RowOf(unit).per_metre;
   const Eigen::Matrix3d thigh = RotationXY(pose.phi, pose.theta - bend_);
   const Eigen::Matrix3d shank = RotationXY(pose.phi, pose.theta + bend_);
   const Eigen::Vector3d bone(0.0, 0.0, -bone_);
 
-  position(pose.hip);
+  append(scale * pose.hip);
   for (int j = kHipJoint; j < 14; ++j) append(Eigen::Vector3d::Zero());
   for (const bool left : {false, true}) {
     const Eigen::Vector3d hip_joint = pose.hip + (left ? 1.0 : -1.0) * HalfStance();
     const Eigen::Vector3d knee = hip_joint + thigh * bone;
     const Eigen::Vector3d& ankle = left ? pose.left_ankle : pose.right_ankle;
-    append({Degrees(pose.phi), Degrees(pose.theta - bend_), 0.0});
-    append({Degrees(2.0 * bend_), 0.0, 0.0});
-    position(shank.transpose() * (ankle - knee));
-    append({Degrees(-pose.theta - bend_), Degrees(-pose.phi), 0.0});
+    append({degrees(pose.phi), degrees(pose.theta - bend_), 0.0});
+    append({degrees(2.0 * bend_), 0.0, 0.0});
+    append(scale * (shank.transpose() * (ankle - knee)));
+    append({degrees(-pose.theta - bend_), degrees(-pose.phi), 0.0});
     append(Eigen::Vector3d::Zero());  // toe
   }
 }
@@ -481,56 +470,42 @@ BvhMotion Motion(const SyntheticRecording& made, int n) {
 }
 
 std::string GroundFile(const Recording& recording) { return "ground/" + recording.id + ".csv"; }
-// Names are the motion's: in a row one for each person.
+// The name of a person's files: in a row one for each.
 std::string OfPerson(const Recording& recording, size_t n) {
-  return recording.id + (recording.people.size() > 1 ? "_" + std::to_string(n) : "");
+  return recording.id + (recording.people.size() > 1 ? StrCat("_", n) : "");
 }
 std::string PlatesFile(const Recording& recording, size_t n) {
   return "plates/" + OfPerson(recording, n) + ".csv";
 }
 
-// A row for each frame: its time, then the numbers.
+// Writes a table of a row for each frame: its time, then the numbers.
 template <typename Row>
-MaybeError WriteTimed(const std::string& path, const std::string& names, double fps, int frames,
-                      const Row& row) {
+void WriteTimed(const std::string& path, const std::string& names, const Recording& recording,
+                const Row& row) {
+  OrThrow(MakeFolderOf(path));
   std::string text = "time," + names + "\n";
-  for (int t = 0; t < frames; ++t) {
-    text += DoubleText(t / fps);
+  for (int t = 0; t < recording.num_frames(); ++t) {
+    text += DoubleText(t / recording.fps);
     for (double value : row(t)) text += "," + DoubleText(value);
     text += "\n";
   }
-  return WriteFileAtomically(path, text);
+  OrThrow(WriteFileAtomically(path, text));
 }
 
-// The ground's and the platforms' files, where the recording has them.
-MaybeError WriteLaboratory(const std::string& folder, const SyntheticRecording& made) {
-  const Recording& recording = made.recording;
-  const int frames = recording.num_frames();
-  if (made.scene.ground.moves()) {
-    if (MaybeError failed = MakeFolder(folder + "/ground")) return failed;
-    if (MaybeError failed = WriteTimed(folder + "/" + GroundFile(recording), "x,y,theta,phi",
-                                       recording.fps, frames, [&](int t) {
-                                         const GroundPose& pose = recording.ground[t];
-                                         return std::vector<double>(pose.data(), pose.data() + 4);
-                                       })) {
-      return failed;
-    }
+// Writes the ground's and the platforms' files, where the recording has them.
+void WriteLaboratory(const std::string& folder, const Recording& recording) {
+  if (!recording.ground.empty()) {
+    WriteTimed(folder + "/" + GroundFile(recording), "x,y,theta,phi", recording,
+               [&](int t) { return recording.ground[t]; });
   }
   for (size_t n = 0; n < recording.people.size(); ++n) {
     const std::vector<PlateSample>& plates = recording.people[n].plates;
     if (plates.empty()) continue;
-    if (MaybeError failed = MakeFolder(folder + "/plates")) return failed;
-    if (MaybeError failed = WriteTimed(folder + "/" + PlatesFile(recording, n), "fx,fy,fz,px,py",
-                                       recording.fps, frames, [&plates](int t) {
-                                         const PlateSample& s = plates[t];
-                                         return std::vector<double>{s.force[0], s.force[1],
-                                                                    s.force[2], s.centre[0],
-                                                                    s.centre[1]};
-                                       })) {
-      return failed;
-    }
+    WriteTimed(folder + "/" + PlatesFile(recording, n), "fx,fy,fz,px,py", recording, [&](int t) {
+      const PlateSample& s = plates[t];
+      return std::array{s.force[0], s.force[1], s.force[2], s.centre[0], s.centre[1]};
+    });
   }
-  return std::nullopt;
 }
 
 ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::string>& bvh,
@@ -551,18 +526,15 @@ ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::s
     nlohmann::ordered_json plates = {{"use", "measure"}, {"file", PlatesFile(recording, n)}};
     if (recording.people.size() == 1) {
       (*entry.json)["force_plates"] = plates;
-      continue;
+    } else {
+      plates["person"] = n;
+      (*entry.json)["force_plates"].push_back(plates);
     }
-    plates["person"] = n;
-    (*entry.json)["force_plates"].push_back(plates);
   }
   if (recording.pushes.empty()) return entry;
   const int start = recording.pushes[0].start_frame;
-  if (start == 0) {
-    entry.push_csv = csv;
-  } else {
-    entry.pushes = {{0, csv, start}};
-  }
+  if (start == 0) entry.push_csv = csv;
+  if (start > 0) entry.pushes = {{0, csv, start}};
   return entry;
 }
 
@@ -570,46 +542,40 @@ ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::s
 
 MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOptions& options,
                                     const std::vector<SyntheticRecording>& recordings) {
-  for (const char* sub : {"bvh", "push"}) {
-    if (MaybeError failed = MakeFolder(folder + "/" + sub)) return failed;
-  }
-  Manifest manifest;
-  manifest.length_unit = kUnit;
-  auto& about = (*manifest.json)["synthetic"];
-  about["seed"] = options.seed;
-  about["stance"] = NameOf(options.model.stance);
-  about["joint_noise_m"] = options.joint_noise_m;
-  for (int i = 0; i < kFirstOwnParameter; ++i) {
-    if (IsNoiseParameter(static_cast<Parameter>(i))) continue;
-    about["truth"][std::string(kParameterNames[i])] = options.parameters[i];
-  }
-  if (options.model.process_noise != ProcessNoise::kNone) {
-    for (int i = kFirstNoiseParameter; i < kMeasuredCart; ++i) {
+  return Caught([&] {
+    for (const char* sub : {"/bvh", "/push"}) OrThrow(MakeFolder(folder + sub));
+    Manifest manifest;
+    manifest.length_unit = kUnit;
+    auto& about = (*manifest.json)["synthetic"];
+    about["seed"] = options.seed;
+    about["stance"] = NameOf(options.model.stance);
+    about["joint_noise_m"] = options.joint_noise_m;
+    const auto add_truth = [&](int i) {
       about["truth"][std::string(kParameterNames[i])] = options.parameters[i];
+    };
+    for (int i = 0; i < kFirstOwnParameter; ++i) {
+      if (!IsNoiseParameter(static_cast<Parameter>(i))) add_truth(i);
     }
-  }
-  // The cart is the middle of two ankles.
-  about["truth"]["measured_cart"] = options.joint_noise_m / std::sqrt(2.0);
-  about["truth"]["measured_hip"] = options.joint_noise_m;
-  for (const SyntheticRecording& made : recordings) {
-    const std::string csv = "push/" + made.recording.id + ".csv";
-    const int people = made.scene.num_people();
-    std::vector<std::string> bvh;
-    for (int n = 0; n < people; ++n) {
-      bvh.push_back("bvh/" + OfPerson(made.recording, static_cast<size_t>(n)) + ".bvh");
-      if (MaybeError failed = WriteBvh(folder + "/" + bvh.back(), Motion(made, n))) {
-        return failed;
+    const bool driven = options.model.process_noise != ProcessNoise::kNone;
+    for (int i = kFirstNoiseParameter; driven && i < kMeasuredCart; ++i) add_truth(i);
+    // The cart is the middle of two ankles.
+    about["truth"]["measured_cart"] = options.joint_noise_m / std::sqrt(2.0);
+    about["truth"]["measured_hip"] = options.joint_noise_m;
+    for (const SyntheticRecording& made : recordings) {
+      const std::string csv = "push/" + made.recording.id + ".csv";
+      std::vector<std::string> bvh;
+      for (int n = 0; n < made.scene.num_people(); ++n) {
+        bvh.push_back("bvh/" + OfPerson(made.recording, n) + ".bvh");
+        OrThrow(WriteBvh(folder + "/" + bvh.back(), Motion(made, n)));
       }
-    }
-    if (MaybeError failed = WriteLaboratory(folder, made)) return failed;
-    if (!made.recording.pushes.empty()) {
-      if (MaybeError failed = WritePushCsv(folder + "/" + csv, made.recording.pushes[0].force)) {
-        return failed;
+      WriteLaboratory(folder, made.recording);
+      if (!made.recording.pushes.empty()) {
+        OrThrow(WritePushCsv(folder + "/" + csv, made.recording.pushes[0].force));
       }
+      manifest.recordings.push_back(Entry(made, bvh, csv));
     }
-    manifest.recordings.push_back(Entry(made, bvh, csv));
-  }
-  return WriteManifest(folder + "/manifest.json", manifest);
+    OrThrow(WriteManifest(folder + "/manifest.json", manifest));
+  });
 }
 
 }  // namespace pushid

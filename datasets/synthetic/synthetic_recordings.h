@@ -115,8 +115,6 @@ struct SyntheticOptions {
   // People in a row in every recording: the pushed subject and the ones after it. More than one
   // make sense with model.interaction.
   int people_in_row = 1;
-  double min_spacing_m = 0.40, max_spacing_m = 0.50;  // between neighbours' carts
-  double sideways_sigma_m = 0.03;                     // of everybody's place
   std::vector<PushStrength> strengths = {{"weak", 2.0}, {"medium", 3.0}, {"strong", 4.0}};
   double fps = 60.0;
   int frames = 90;  // per recording

@@ -8,6 +8,7 @@
 #include "datasets/formats/bvh.h"
 #include "datasets/manifest/manifest.h"
 #include "tests/apps/app_fixture.h"
+#include "tests/datasets/raw_bvh.h"
 #include "tests/datasets/recording_folder.h"
 
 namespace pushid {

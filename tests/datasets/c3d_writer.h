@@ -158,7 +158,7 @@ class C3dWriter {
     parameters_ += '\0';
   }
 
-  // What holds more entries than a dimension goes on in NAME2, NAME3, ...
+  // A list of more entries than a dimension goes on in NAME2, NAME3, ...
   template <typename Entry, typename Write>
   static void InParts(const std::string& name, const std::vector<Entry>& entries, Write write) {
     std::string part = name;

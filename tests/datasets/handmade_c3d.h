@@ -150,7 +150,7 @@ inline HandmadeC3d UnsignedC3d(C3dProcessor processor = C3dProcessor::kIntel) {
   return file;
 }
 
-// The same without a word of the format: an offset at the end of the signed range says it.
+// As above without a word of the format: an offset at the end of the signed range says it.
 inline HandmadeC3d UnsaidUnsignedC3d(C3dProcessor processor = C3dProcessor::kIntel) {
   HandmadeC3d file(processor);
   file.raw = {32668, 32868};
@@ -187,7 +187,7 @@ inline HandmadeC3d TrialC3d(int frames, C3dProcessor processor = C3dProcessor::k
   return file;
 }
 
-// The same by POINT:LONG_FRAMES.
+// As above, by POINT:LONG_FRAMES.
 inline HandmadeC3d LongFramesC3d(int frames, C3dProcessor processor = C3dProcessor::kIntel) {
   HandmadeC3d file(processor);
   file.frames = frames;

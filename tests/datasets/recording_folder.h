@@ -36,7 +36,7 @@ inline BvhMotion Walker(int frames, double hip_height_m = 0.95) {
   return motion;
 }
 
-// The same motion in a unit of which so many make the present one.
+// The motion in a unit of which so many make the present one.
 inline BvhMotion Scaled(BvhMotion motion, double factor) {
   std::vector<bool> rotation;
   for (BvhJoint& joint : motion.skeleton.joints) {

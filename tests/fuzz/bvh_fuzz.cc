@@ -8,9 +8,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static MemoryFile file;
   const CpuLimit limit;
   const std::string& path = file.Fill(data, size);
-  const Result<BvhMotion> raw = ReadBvh(path);
+  BvhPositionOptions raw;
+  raw.keep_values = true;
+  const Result<BvhPositions> values = ReadBvhPositions(path, raw);
   const Result<BvhPositions> positions = ReadBvhPositions(path);
-  Demand(raw.ok() == positions.ok());
-  if (raw.ok()) Demand(raw.value().num_frames() == positions.value().num_frames());
+  Demand(values.ok() == positions.ok());
+  if (!values.ok()) return 0;
+  const BvhPositions& read = values.value();
+  Demand(read.num_frames() == positions.value().num_frames());
+  Demand(static_cast<int>(read.values.size()) == read.num_frames() * read.skeleton.num_channels());
   return 0;
 }

@@ -1,5 +1,5 @@
-// What a fit of two subjects might have found, filled in by hand: numbers that are none where a
-// model may have them.
+// A model as a fit of two subjects might have found it, filled in by hand: numbers that are none
+// where a model may have them.
 #include "tests/fuzz/model_seeds.h"
 
 #include <limits>

@@ -28,7 +28,7 @@ TEST(WarningTest, EqualOnesAreCounted) {
             Texts({"low (2 times)", "recording 'a': a.bvh x (2 times)"}));
 }
 
-// What a sentence says decides nothing: not even that it reads like one of a recording.
+// The words of a sentence decide nothing: not even that it reads like one of a recording.
 TEST(WarningTest, SentencesAreNotRead) {
   EXPECT_EQ(GroupedWarnings({Warning("recording a: no"), Warning("recording b: no"),
                              Warning("same", "a", "same"), Warning("same")}),

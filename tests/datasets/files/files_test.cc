@@ -114,8 +114,7 @@ TEST_F(InputFileTest, HashesAreThoseOfXxhsum) {
   hash.Add(std::string_view(text).substr(0, 12345));
   hash.Add(std::string_view(text).substr(12345));
   EXPECT_EQ(HashFile(path).value(), hash.Hex());
-  LineReader reader;
-  ASSERT_FALSE(reader.Open(path));
+  LineReader reader(path);
   std::string_view line;
   std::string joined;
   while (reader.Next(&line)) joined.append(line).append("\n");
@@ -124,10 +123,9 @@ TEST_F(InputFileTest, HashesAreThoseOfXxhsum) {
   EXPECT_EQ(reader.HashHex(), hash.Hex());
 }
 
-// What the other readers take for blank (IsBlank), and no less.
+// Lines are blank that the other readers take for blank (IsBlank), and no others.
 TEST_F(InputFileTest, BlankLinesArePassedOver) {
-  LineReader reader;
-  ASSERT_FALSE(reader.Open(WriteText("a.txt", "\v\n \t\f\r\n\na\n\v")));
+  LineReader reader(WriteText("a.txt", "\v\n \t\f\r\n\na\n\v"));
   std::string_view line;
   ASSERT_TRUE(reader.NextNonBlank(&line));
   EXPECT_EQ(line, "a");
@@ -139,14 +137,20 @@ TEST_F(InputFileTest, BlankLinesArePassedOver) {
 constexpr char kByteOrderMark[] = "\xEF\xBB\xBF";
 
 TEST_F(InputFileTest, AByteOrderMarkIsSkippedOnce) {
-  LineReader reader;
-  ASSERT_FALSE(
-      reader.Open(WriteText("a.csv", std::string(kByteOrderMark) + "a\n" + kByteOrderMark)));
+  LineReader reader(WriteText("a.csv", std::string(kByteOrderMark) + "a\n" + kByteOrderMark));
   std::string_view line;
   ASSERT_TRUE(reader.Next(&line));
   EXPECT_EQ(line, "a");
   ASSERT_TRUE(reader.Next(&line));
   EXPECT_EQ(line, kByteOrderMark);
+}
+
+// The error of reading the first line.
+MaybeError FirstLine(const std::string& path) {
+  return Caught([&] {
+    std::string_view line;
+    LineReader(path).Next(&line);
+  });
 }
 
 TEST_F(InputFileTest, WhatIsNoTextIsNamed) {
@@ -164,12 +168,10 @@ TEST_F(InputFileTest, WhatIsNoTextIsNamed) {
       {"\xC3\xA9t\xC3\xA9,x\n"s, ""},
   };
   for (const auto& [bytes, says] : cases) {
-    LineReader reader;
-    ASSERT_FALSE(reader.Open(WriteText("a.csv", bytes)));
-    std::string_view line;
-    EXPECT_EQ(reader.Next(&line), *says == '\0') << bytes;
+    const MaybeError error = FirstLine(WriteText("a.csv", bytes));
+    EXPECT_EQ(!error, *says == '\0') << bytes;
     if (*says == '\0') continue;
-    EXPECT_TRUE(Contains(reader.error()->ToString(), std::string("this is no text, but ") + says));
+    EXPECT_TRUE(Contains(error->ToString(), std::string("this is no text, but ") + says));
   }
 }
 
@@ -177,9 +179,7 @@ TEST_F(InputFileTest, WhatIsNoTextIsNamed) {
 TEST_F(InputFileTest, NamesThatOtherSystemsTake) {
   std::filesystem::create_directories(folder_ / "Bvh/Day 1");
   const std::string there = WriteText("Bvh/Day 1/S01_weak.bvh", "x");
-  const auto message = [this](const std::string& name) {
-    return InputFile().Open(Path(name))->ToString();
-  };
+  const auto message = [this](const std::string& name) { return ProblemOf(HashFile(Path(name))); };
   for (const char* name :
        {"Bvh/Day 1/s01_weak.bvh", "bvh/day 1/S01_WEAK.BVH", "BVH/Day 1/S01_weak.bvh",
         "Bvh/Day 1/S01_weak.Bvh", "bvh/DAY 1/s01_weak.bvh"}) {
@@ -223,12 +223,9 @@ TEST_F(InputFileTest, OtherEncodingsAreNamed) {
       const auto path = [&](const char* text) {
         return WriteText("a.json", Encoded(text, c.bytes, c.big_endian, mark));
       };
-      LineReader reader;
-      ASSERT_FALSE(reader.Open(path("time,force\n0,1\n")));
-      std::string_view line;
-      EXPECT_FALSE(reader.NextNonBlank(&line));
-      ASSERT_TRUE(reader.error()) << c.name << mark;
-      EXPECT_TRUE(Contains(reader.error()->ToString(), said)) << reader.error()->ToString();
+      const MaybeError error = FirstLine(path("time,force\n0,1\n"));
+      ASSERT_TRUE(error) << c.name << mark;
+      EXPECT_TRUE(Contains(error->ToString(), said)) << error->ToString();
       EXPECT_TRUE(Contains(ProblemOf(ReadJsonDocument(path("{\"a\": 1}"))), said))
           << c.name << mark;
     }
@@ -236,12 +233,9 @@ TEST_F(InputFileTest, OtherEncodingsAreNamed) {
 }
 
 TEST_F(InputFileTest, EndlessLineIsRefused) {
-  LineReader reader;
-  ASSERT_FALSE(reader.Open("/dev/zero"));
-  std::string_view line;
-  EXPECT_FALSE(reader.Next(&line));
-  ASSERT_TRUE(reader.error());
-  EXPECT_TRUE(Contains(reader.error()->ToString(), "longer than 64 MB"));
+  const MaybeError error = FirstLine("/dev/zero");
+  ASSERT_TRUE(error);
+  EXPECT_TRUE(Contains(error->ToString(), "longer than 64 MB"));
 }
 
 TEST_F(JsonFileTest, DoublesReadBackTheSame) {

@@ -118,7 +118,7 @@ TEST_F(NumericTableTest, TimesThatJump) {
   std::string text = "time,a\n";
   for (int i = 0; i < 20; ++i) text += std::to_string(0.01 * (i + (i > 9 ? 4 : 0))) + ",1\n";
   const NumericTable read =
-      Unwrapped(ReadNumericTable(WriteText("a.csv", text), TableFormat::kCsv, {nullptr, true}));
+      Unwrapped(ReadNumericTable(WriteText("a.csv", text), TableFormat::kCsv));
   EXPECT_TRUE(Contains(ProblemOf(EvenTimeStep(read, 0)),
                        ":12: the times do not ascend in even "
                        "steps: 0.05 s where 0.01 s is usual"));

@@ -1,4 +1,4 @@
-// What the BVH reader refuses, and that the message says where and why.
+// Files that the BVH reader refuses, with a message that says where and why.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "datasets/formats/bvh.h"
+#include "tests/datasets/raw_bvh.h"
 #include "tests/test_support.h"
 
 namespace pushid {
@@ -160,15 +161,14 @@ TEST_F(BvhErrorsTest, NumbersInEveryForm) {
   const std::string path =
       WriteText("forms.bvh", "HIERARCHY\n" + joints + "End Site { OFFSET 0 0 0 }" + ends +
                                  "\nMOTION\nFrames: 2\nFrame Time: 1\n" + row + "\n" + row + "\n");
-  BvhMotion read = Unwrapped(ReadBvh(path));
-  // Where nobody asks for their values too; of the frame that is kept all are.
+  const BvhMotion read = Unwrapped(ReadBvh(path));
+  // Where nobody asks for their values too; otherwise all are kept.
   BvhPositionOptions of_root;
   of_root.choose_joints = [](const BvhSkeleton&) { return std::vector<int>{0}; };
   EXPECT_EQ(Unwrapped(ReadBvhPositions(path, of_root)).positions[0].size(), 2u);
-  of_root.kept_frame = 1;
-  read.values.resize(tokens.size());
-  EXPECT_EQ(Unwrapped(ReadBvhPositions(path, of_root)).kept_values, read.values);
-  ASSERT_EQ(read.values.size(), tokens.size());
+  of_root.keep_values = true;
+  EXPECT_EQ(Unwrapped(ReadBvhPositions(path, of_root)).values, read.values);
+  ASSERT_EQ(read.values.size(), 2 * tokens.size());
   for (std::size_t i = 0; i < tokens.size(); ++i) {
     const double expected = std::strtod(tokens[i].c_str(), nullptr);
     EXPECT_EQ(read.values[i], expected) << tokens[i];

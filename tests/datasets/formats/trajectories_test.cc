@@ -57,7 +57,7 @@ TEST_F(TrajectoriesTest, AsCsv) {
   EXPECT_FALSE(IsCrowdCsv(WriteText("b.csv", "time,hip_x,hip_y,hip_z\n0,0,0,0\n")));
 }
 
-// Of vertical tabs and form feeds too; such a line once ended the program.
+// Blank lines of vertical tabs and form feeds are skipped too; such a line once ended the program.
 TEST_F(TrajectoriesTest, HeadsAsPeopleWriteThem) {
   for (const char* text :
        {"ID,Frame,X,Y\n1,0,1,2\n", "Id;Frame;X;Y\n1;0;1;2\n", "id\tframe\tX\tY\n1\t0\t1\t2\n",

@@ -1,4 +1,4 @@
-// What of recordings cannot be right: pushes against the motion they made, copies, masses, rates.
+// Recordings that cannot be right: pushes against the motion they made, copies, masses, rates.
 #include "datasets/inspection/findings.h"
 
 #include <gtest/gtest.h>

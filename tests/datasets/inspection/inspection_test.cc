@@ -1,4 +1,4 @@
-// What pushid-inspect says: each warning once provoked, none on a good file.
+// The text of pushid-inspect: each warning once provoked, none on a good file.
 #include "datasets/inspection/inspection.h"
 
 #include <gtest/gtest.h>
@@ -258,6 +258,11 @@ TEST_F(InspectionTest, C3d) {
   const std::string text = ReadText(Path("a.c3d"));
   WriteText("cut.c3d", text.substr(0, text.size() - 1024));
   EXPECT_TRUE(Contains(Of("cut.c3d"), "of 10 frames: it is truncated"));
+  C3dFile cell = SampleC3d();
+  cell.platforms.clear();
+  cell.analog[6].unit = "kN";
+  ASSERT_FALSE(WriteC3d(Path("cell.c3d"), cell));
+  EXPECT_TRUE(Contains(Of("cell.c3d"), "peak 40000 N"));
 }
 
 TEST_F(InspectionTest, OtherFiles) {

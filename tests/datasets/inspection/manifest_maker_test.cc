@@ -247,7 +247,7 @@ TEST_F(ManifestMakerTest, WhatCannotBeMade) {
   EXPECT_TRUE(Contains(MakingMessage(), "lie along the same axis"));
 }
 
-// What a laboratory knows of people stays with them, and is there for --contrast and --covariate.
+// Facts about people stay with them, and are there for --contrast and --covariate.
 TEST_F(ManifestMakerTest, FurtherColumnsAreKnownOfPeople) {
   options_.people = Unwrapped(ReadPeople(
       WriteText("m.csv", "id,mass_kg,group,height\nanna,62,patients,1.7\nben,80.5,controls,\n")));

@@ -9,6 +9,30 @@
 namespace pushid {
 namespace {
 
+// One foot's points, one position per frame, m, and weights of frames.
+struct FootTracks {
+  std::vector<Eigen::Vector3d> ankle, toe, heel;
+  std::vector<double> weight;
+};
+
+RecordedPerson PersonOf(Foot foot, const FootTracks& tracks) {
+  RecordedPerson person;
+  const bool left = foot == Foot::kLeft;
+  (left ? person.left_ankle : person.right_ankle) = tracks.ankle;
+  (left ? person.left_toe : person.right_toe) = tracks.toe;
+  (left ? person.left_heel : person.right_heel) = tracks.heel;
+  person.weight = tracks.weight;
+  return person;
+}
+
+std::vector<FootStep> FindSteps(Foot foot, const FootTracks& tracks, double fps) {
+  return FindSteps(PersonOf(foot, tracks), fps).steps;
+}
+
+double Travel(const FootTracks& tracks, double fps) {
+  return FindSteps(PersonOf(Foot::kLeft, tracks), fps).travel;
+}
+
 struct KnownStep {
   double lift_off_s, landing_s, x, y;  // where it takes the foot, m
 };

@@ -92,8 +92,8 @@ TEST_F(LaboratoryTest, WhoStandsQuietlyStartsFromTheMean) {
   EXPECT_GT((seen.states[0][0].q - mean).norm(), 1e-4);
 }
 
-// Who steps onto the platform when it moves already has no rest there: centres count from their
-// mean.
+// A person who steps onto the platform when it moves already has no rest there: centres count from
+// their mean.
 TEST_F(LaboratoryTest, CentresOfWhoPressedNothingBeforeCountFromTheirMean) {
   const auto loaded = Unwrapped(Load(OnPlatform(GroundKind::kStep)));
   Recording recording = loaded[0];

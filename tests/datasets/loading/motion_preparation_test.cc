@@ -69,7 +69,7 @@ TEST(TrackGapsTest, NeverSeen) {
   EXPECT_FALSE(track[0].allFinite());
 }
 
-// What is left of a sine of one frequency, in amplitude, after the filter.
+// The amplitude that the filter leaves of a sine of one frequency.
 double Gain(double hz, double cutoff_hz, double rate_hz) {
   Track track;
   const int frames = static_cast<int>(20.0 * rate_hz);

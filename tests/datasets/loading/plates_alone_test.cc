@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 constexpr double kMass = 70.0, kRate = 100.0;
 constexpr int kRows = 200;
 
-// What a platform measured: force on the person and centre of pressure.
+// The measurements of a platform: force on the person and centre of pressure.
 struct Pressed {
   Eigen::Vector3d force;
   Eigen::Vector2d centre;
@@ -265,13 +265,13 @@ TEST_F(PlatesOfPeople, OfSyntheticPeopleCarryTheirWeight) {
 TEST_F(PlatesOfPeople, AreInspected) {
   ASSERT_TRUE(Load().ok());
   const Inspection found = Unwrapped(Inspect(Path("manifest.json")));
-  ASSERT_FALSE(found.grounds.empty());
-  EXPECT_EQ(found.grounds[0].kind, "displacement");
-  EXPECT_NEAR(found.grounds[0].rate_hz, 60.0, 1e-6);
-  EXPECT_NEAR(found.grounds[0].farthest_m, 0.03, 1e-6);
+  ASSERT_FALSE(found.ground.empty());
+  EXPECT_EQ(found.ground[0]["kind"], "displacement");
+  EXPECT_NEAR(found.ground[0]["rate_hz"].get<double>(), 60.0, 1e-6);
+  EXPECT_NEAR(found.ground[0]["farthest_m"].get<double>(), 0.03, 1e-6);
   ASSERT_GE(found.plates.size(), 2u);
-  EXPECT_NEAR(found.plates[1].weight_ratio, 1.0, 5e-3);
-  EXPECT_EQ(found.plates[1].platforms, 1);
+  EXPECT_NEAR(found.plates[1]["weight_ratio"].get<double>(), 1.0, 5e-3);
+  EXPECT_EQ(found.plates[1]["platforms"], 1);
   const std::string text = InspectionText(found);
   EXPECT_TRUE(Contains(text, "displacement at 60 per second, up to 30 mm"));
   EXPECT_TRUE(Contains(text, "1 at 60 per second, measured: mean vertical force"));

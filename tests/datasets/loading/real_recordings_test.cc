@@ -6,6 +6,7 @@
 #include "datasets/formats/bvh.h"
 #include "datasets/loading/foot_steps.h"
 #include "datasets/loading/load_recordings.h"
+#include "tests/datasets/raw_bvh.h"
 #include "tests/test_support.h"
 
 namespace pushid {

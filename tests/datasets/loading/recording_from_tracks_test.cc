@@ -12,14 +12,16 @@
 namespace pushid {
 namespace {
 
-TrackedRecording Standing(int frames) {
-  TrackedPerson person{"anna", 62.0, {}, {}, {}};
+Recording Standing(int frames) {
+  RecordedPerson person;
+  person.subject_id = "anna";
+  person.mass_kg = 62.0;
   for (int t = 0; t < frames; ++t) {
     person.hip.emplace_back(0.001 * t, 0.0, 1.0);
     person.left_ankle.emplace_back(0.0, 0.1, 0.1);
     person.right_ankle.emplace_back(0.0, -0.1, 0.1);
   }
-  TrackedRecording tracks;
+  Recording tracks;
   tracks.id = "trial";
   tracks.fps = 100.0;
   tracks.people = {person};
@@ -28,7 +30,7 @@ TrackedRecording Standing(int frames) {
 }
 
 TEST(RecordingFromTracks, GapsAreFilledAndLongOnesDoNotCount) {
-  TrackedRecording tracks = Standing(60);
+  Recording tracks = Standing(60);
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   for (int t = 10; t < 13; ++t) tracks.people[0].hip[t].setConstant(kNaN);
   for (int t = 30; t < 50; ++t) tracks.people[0].left_ankle[t].setConstant(kNaN);
@@ -39,14 +41,14 @@ TEST(RecordingFromTracks, GapsAreFilledAndLongOnesDoNotCount) {
   EXPECT_EQ(person.weight[11], 1.0);
   EXPECT_EQ(person.weight[40], 0.0);
   EXPECT_EQ(made.pushes[0].EndFrame(), 5);
-  // The same tracks have the same hash, others another.
+  // Equal tracks have one hash, others another.
   EXPECT_EQ(RecordingFromTracks(tracks).value().content_hash, made.content_hash);
   EXPECT_NE(RecordingFromTracks(Standing(60)).value().content_hash, made.content_hash);
 }
 
 TEST(RecordingFromTracks, GroundAndPlatformsShareItsFrames) {
-  const auto made = [](const std::function<void(TrackedRecording*)>& change) {
-    TrackedRecording tracks = Standing(60);
+  const auto made = [](const std::function<void(Recording*)>& change) {
+    Recording tracks = Standing(60);
     PlateSample sample{{1.0, 2.0, 62.0 * 9.81}, {0.01, 0.0, 0.0}, 1.0};
     tracks.people[0].plates.assign(60, sample);
     for (int t = 0; t < 60; ++t) {
@@ -61,7 +63,7 @@ TEST(RecordingFromTracks, GroundAndPlatformsShareItsFrames) {
   EXPECT_NEAR(both.ground[50][0], 0.025, 1e-12);
   EXPECT_EQ(both.people[0].plates[7].centre.x(), 0.01);
   EXPECT_NE(both.content_hash, RecordingFromTracks(Standing(60)).value().content_hash);
-  const auto told = [&](const std::function<void(TrackedRecording*)>& change) {
+  const auto told = [&](const std::function<void(Recording*)>& change) {
     return ProblemOf(made(change));
   };
   EXPECT_TRUE(Contains(told([](auto* t) { t->ground.pop_back(); }), "59 rows, the motion 60"));
@@ -76,7 +78,7 @@ TEST(RecordingFromTracks, GroundAndPlatformsShareItsFrames) {
 
 // Every third frame without a hip: interpolated frames count by the two thirds that were seen.
 TEST(RecordingFromTracks, ManyInterpolatedFramesCountLess) {
-  TrackedRecording tracks = Standing(60);
+  Recording tracks = Standing(60);
   const Eigen::Vector3d hidden =
       Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   for (int t = 1; t < 60; t += 10) tracks.people[0].hip[t] = hidden;
@@ -106,11 +108,11 @@ TEST(RecordingFromTracks, ManyInterpolatedFramesCountLess) {
 
 TEST(RecordingFromTracks, WhatIsWrongIsTold) {
   const auto problem = [](auto change) {
-    TrackedRecording tracks = Standing(20);
+    Recording tracks = Standing(20);
     change(&tracks);
     return ProblemOf(RecordingFromTracks(tracks));
   };
-  using Tracks = TrackedRecording*;
+  using Tracks = Recording*;
   EXPECT_TRUE(Contains(problem([](Tracks t) { t->fps = 0.0; }), "recording 'trial': fps"));
   EXPECT_TRUE(Contains(problem([](Tracks t) { t->people.clear(); }), "no people"));
   EXPECT_TRUE(Contains(problem([](Tracks t) { t->people[0].mass_kg = 0.0; }), "mass of 'anna'"));

@@ -134,7 +134,7 @@ TEST(StepLabels, FoundAsLabelled) {
   }
 }
 
-// Who steps, by steps and by the plain rule that an ankle goes 5 cm from its first place.
+// People who step, by steps and by the plain rule that an ankle goes 5 cm from its first place.
 TEST(StepLabels, WhoSteps) {
   if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
   const auto recordings = Unwrapped(LoadRecordings(RecordingsRoot() + "/manifest.json", {}));

@@ -51,7 +51,7 @@ constexpr char kGoodManifest[] = R"({
 }
 )";
 
-// Of the manifest for all, of a recording on top of it.
+// The manifest states errors for all, and a recording its own on top of them.
 TEST_F(ManifestTest, StatedErrors) {
   auto json = nlohmann::ordered_json::parse(kGoodManifest);
   json["stated_errors"] = {{"mass", 0.01}, {"push_zero_N", 0.5}};

@@ -1,4 +1,4 @@
-// Who plays which role, in the skeletons and marker sets of the field.
+// The roles of joints, in the skeletons and marker sets of the field.
 #include <gtest/gtest.h>
 
 #include "datasets/manifest/joint_mapping.h"
@@ -170,7 +170,7 @@ TEST(RoleChoiceTest, AMeanLeavesItsJointsToOthers) {
   EXPECT_EQ(roles.Single(kRightHip), 1);
 }
 
-// Of two people in one file each is their own.
+// Two people in one file have joints of their own.
 TEST(RoleChoiceTest, PrefixesTellPeopleApart) {
   std::vector<std::string> names;
   for (const char* person : {"Anna:", "Ben:"}) {

@@ -119,7 +119,31 @@ TEST_F(SensorChoiceTest, ColumnsOfTables) {
   EXPECT_TRUE(Contains(Message(axes), "lie along the same axis"));
 }
 
-// What is recorded in the file of the motion has its clock and axes; what is said, wins.
+// A column's unit counts like a channel's; a gain counts, whatever the unit is.
+TEST_F(SensorChoiceTest, ColumnsInOtherUnits) {
+  for (const auto& [name, newtons] :
+       {std::pair("Force (kN)", 1e3), std::pair("Force [lbf]", 4.44822),
+        std::pair("Force (N, up)", 1.0), std::pair("Force (raw)", 1.0), std::pair("load", 1.0)}) {
+    WriteText("u.csv", std::string("time,\"") + name + "\"\n0,0\n0.1,5\n0.2,0\n");
+    SensorChoice choice = Choice("u.csv", name);
+    EXPECT_NEAR(Unwrapped(ReadSensor(choice)).force[1].x(), 5.0 * newtons, 1e-9) << name;
+    choice.gain = 2.0;
+    EXPECT_EQ(Unwrapped(ReadSensor(choice)).force[1].x(), 10.0) << name;
+  }
+}
+
+// The place of the pressure tells that units or corners are wrong, in a push as under a foot.
+TEST_F(SensorChoiceTest, PressureOutsideOfThePlatformIsTold) {
+  C3dFile file = SampleC3d();
+  for (int c = 3; c < 6; ++c) file.analog[c].unit = "Nm";
+  ASSERT_FALSE(WriteC3d(Path("far.c3d"), file));
+  std::vector<std::string> warnings;
+  ASSERT_TRUE(ReadSensor(Choice("far.c3d", "platform:1"), &warnings).ok());
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(Contains(warnings[0], "outside of its corners"));
+}
+
+// A sensor recorded in the file of the motion has its clock and axes; those that are given win.
 TEST_F(SensorChoiceTest, FilledFromTheMotion) {
   RecordedPerson person;
   person.file = Path("a.c3d");

@@ -49,7 +49,7 @@ TEST_F(SensorCsv, ReadsWhatIsPlain) {
                   .is_vector);
 }
 
-// What is not, is asked for by its column.
+// A table of other columns is asked for by its column.
 TEST_F(SensorCsv, AsksForTheColumn) {
   for (const char* head : {"time,force (kN)", "time,Force (lbf)", "time,load", "time,force (V)",
                            "time,fx,fy", "time,fx,fy,fz,mx", "force,time", "time,force,force_2",

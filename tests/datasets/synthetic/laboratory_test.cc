@@ -30,7 +30,7 @@ LaboratoryTrial Trial(double speed, double sway = 0.0, int substeps = 2) {
   return Unwrapped(SimulateLaboratoryTrial(person, APush(person, speed), 3.0, sway, 1, substeps));
 }
 
-// Of legs and trunk, by Winter's table, m; foot: of the middle of the ankles.
+// Centre of mass of legs and trunk, by Winter's table, m; foot: place of the middle of the ankles.
 double CentreOfMass(const LaboratorySample& s) {
   const LaboratoryPerson person = APerson();
   const double h = person.height_m, hip = person.RodLength() * std::sin(s.legs);
@@ -39,7 +39,7 @@ double CentreOfMass(const LaboratorySample& s) {
              (0.293 + 0.678);
 }
 
-// Who leans and is left alone: the platform is pressed below the centre of mass.
+// A person who leans and is left alone presses the platform below the centre of mass.
 TEST(Laboratory, AtRestTheCentreOfPressureIsBelowTheCentreOfMass) {
   const LaboratoryTrial trial = Trial(0.0);
   const LaboratorySample& last = trial.samples.back();

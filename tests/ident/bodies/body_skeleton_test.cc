@@ -9,6 +9,7 @@
 #include "ident/prediction/prediction.h"
 #include "models/restoration/restoration.h"
 #include "tests/datasets/named_skeletons.h"
+#include "tests/datasets/raw_bvh.h"
 #include "tests/datasets/recording_folder.h"
 #include "tests/models/body_samples.h"
 #include "tests/test_support.h"
