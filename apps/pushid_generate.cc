@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -37,15 +38,12 @@ namespace {
 
 using namespace pushid;
 
-// What follows from several flags.
+// Values that follow from several flags.
 struct GenerateOptions {
   GeneratorChanges changes;
   int scored_samples = 1;  // of every group, each scored by itself
   ForecastProtocol protocol = ForecastProtocol::kValidation;
 };
-
-// Poses of the strip.
-inline constexpr int kStripPoses = 6;
 
 const GenerateOptions kOptions;
 
@@ -108,16 +106,14 @@ void ReadChanges(GeneratorChanges* changes) {
   DiffusionGeneratorOptions& diffusion = changes->diffusion;
   TakeInRange("steps", FLAGS_steps, 1, kDiffusionTime, &diffusion.steps);
   TakeInRange("blend", FLAGS_blend, 0.0, 1.0, &diffusion.blend);
+  const std::map<std::string, bool*> without = {{"ridge", &changes->ridge},
+                                                {"simlpe", &changes->simlpe},
+                                                {"bones", &changes->particles.project_bones}};
   for (const std::string& part : SplitList(FLAGS_without)) {
-    if (part == "ridge") {
-      changes->ridge = false;
-    } else if (part == "simlpe") {
-      changes->simlpe = false;
-    } else if (part == "bones") {
-      changes->particles.project_bones = false;
-    } else {
+    if (without.count(part) == 0) {
       throw Error{"--without names '" + part + "'; it must list ridge, simlpe or bones"};
     }
+    *without.at(part) = false;
   }
 }
 
@@ -269,18 +265,21 @@ ForecastScene SceneOfWindow(const MotionGenerator& generator,
   return scene;
 }
 
-// Writes the files of --poses_out, --svg_out and --html_out; their names go to stdout.
-void ShowForecast(const ForecastScene& scene) {
-  if (!FLAGS_poses_out.empty()) {
-    const auto files = OrFail(WritePoses(FLAGS_poses_out, scene));
-    for (const std::string& file : files) std::printf("%s\n", file.c_str());
-  }
+// Prints the names of files, and those of --svg_out and --html_out, which it writes.
+void Show(const std::vector<std::string>& files, const Animation& strip, const Animation& page) {
+  for (const std::string& file : files) std::printf("%s\n", file.c_str());
   const auto write = [](const std::string& file, const std::string& content) {
     OrFail(WriteFileAtomically(file, content));
     std::printf("%s\n", file.c_str());
   };
-  if (!FLAGS_svg_out.empty()) write(FLAGS_svg_out, ForecastStripSvg(scene, kStripPoses));
-  if (!FLAGS_html_out.empty()) write(FLAGS_html_out, ForecastPageHtml(scene));
+  if (!FLAGS_svg_out.empty()) write(FLAGS_svg_out, PoseStrip(strip, kPosesOfStrip).ToString());
+  if (!FLAGS_html_out.empty()) write(FLAGS_html_out, AnimationHtml({page}));
+}
+
+void ShowWindow(const ForecastScene& scene) {
+  std::vector<std::string> files;
+  if (!FLAGS_poses_out.empty()) files = OrFail(WritePoses(FLAGS_poses_out, scene));
+  Show(files, ToAnimation(scene, scene.num_observed() - 1), ToAnimation(scene, 0));
 }
 
 int FromClips(const TrainedNetworks& trained, const GenerateOptions& options) {
@@ -311,7 +310,7 @@ int FromClips(const TrainedNetworks& trained, const GenerateOptions& options) {
   json.update(ToJson(scores));
   json["baselines"]["zero_velocity"] = ToJson(ScoresOf(windows, ZeroVelocity(windows), layout));
   if (Shows() || FLAGS_target_window >= 0) {
-    ShowForecast(SceneOfWindow(*generator, windows, &json));
+    ShowWindow(SceneOfWindow(*generator, windows, &json));
   }
   json["run"] = {{"seconds_per_window", per_window}};
   if (FLAGS_json_out.empty()) return kDone;
@@ -321,32 +320,12 @@ int FromClips(const TrainedNetworks& trained, const GenerateOptions& options) {
 
 // Groups forecast and shown.
 
-std::vector<std::string> WriteGroup(const std::string& path, const BodyScene& scene) {
-  if (IsBodyFile(path)) return OrFail(WriteBodyBvh(path, scene));
-  OrFail(WriteJointsCsv(path, scene));
-  return {path};
-}
-
 // The model of --physics; nothing where none is named.
 std::optional<IdentifiedModel> LoadPhysics() {
   if (FLAGS_physics.empty()) return std::nullopt;
   IdentifiedModel model = ModelOf(OrFail(ReadFittedModel(FLAGS_physics)).fit);
   model.source = FLAGS_physics;
   return model;
-}
-
-// A recording's forecast by a generator of any kind, to its end or for `frames` frames in all;
-// the generator gets physics that see as many frames.
-std::vector<BodyMotion> GenerateWith(const GeneratorSettings& settings,
-                                     const MotionGenerator& generator,
-                                     const BodyRecording& recording,
-                                     const std::optional<IdentifiedModel>& physics,
-                                     int frames = 0) {
-  GroupHips hips;
-  if (physics) {
-    hips = PendulumHips(recording, OrFail(PredictBeside(settings, *physics, recording, frames)));
-  }
-  return OrFail(GenerateBodies(settings, generator, recording, hips, frames));
 }
 
 // The states of --states, or the built-in ones; writes --csv_out.
@@ -365,16 +344,14 @@ SocialCues FlaggedCues(const std::vector<BodyRecording>& recordings) {
   return cues;
 }
 
-// Writes the files of --poses_out, --svg_out and --html_out: everybody recorded, forecast, and
-// beside them the pendulums of the physics; the page shows the figures too. Returns the files'
-// names.
-std::vector<std::string> ShowGroup(const GeneratorSettings& settings,
-                                   const TrainedNetworks& trained, const GenerateOptions& options,
-                                   const BodyRecording& recording,
-                                   const std::optional<IdentifiedModel>& physics,
-                                   const std::vector<std::string>& figures) {
-  const auto bodies =
-      GenerateWith(settings, *trained.Make(options.changes), recording, physics, FLAGS_frames);
+// Shows everybody recorded, forecast, and beside them the pendulums of the physics; the page has
+// the figures too.
+void ShowGroup(const GeneratorSettings& settings, const TrainedNetworks& trained,
+               const GenerateOptions& options, const BodyRecording& recording,
+               const std::optional<IdentifiedModel>& physics,
+               const std::vector<std::string>& figures) {
+  const auto bodies = OrFail(GenerateBodies(settings, *trained.Make(options.changes), recording,
+                                            physics ? &*physics : nullptr, FLAGS_frames));
   Animation animation;
   animation.title = recording.pendulum.id + ", " + NameOf(trained.kind());
   animation.dt = recording.pendulum.scene.dt;
@@ -387,18 +364,15 @@ std::vector<std::string> ShowGroup(const GeneratorSettings& settings,
     AddPrediction(recording.pendulum, predicted, {}, &animation);
   }
   std::vector<std::string> files;
-  if (!FLAGS_poses_out.empty()) {
-    files = WriteGroup(FLAGS_poses_out, SceneOf(recording, bodies));
+  const std::string& poses = FLAGS_poses_out;
+  const BodyScene scene = SceneOf(recording, bodies);
+  if (IsBodyFile(poses)) {
+    files = OrFail(WriteBodyBvh(poses, scene));
+  } else if (!poses.empty()) {
+    OrFail(WriteJointsCsv(poses, scene));
+    files = {poses};
   }
-  if (!FLAGS_svg_out.empty()) {
-    OrFail(WriteFileAtomically(FLAGS_svg_out, PoseStrip(animation, kStripPoses).ToString()));
-    files.push_back(FLAGS_svg_out);
-  }
-  if (!FLAGS_html_out.empty()) {
-    OrFail(WriteFileAtomically(FLAGS_html_out, AnimationHtml({animation})));
-    files.push_back(FLAGS_html_out);
-  }
-  return files;
+  Show(files, animation, animation);
 }
 
 // Once for all recordings whose pushes are of such kinds.
@@ -415,19 +389,13 @@ void WarnOfPushKinds(const GeneratorSettings& settings,
 BodyScores ScoreGroups(const GeneratorSettings& settings, const MotionGenerator& generator,
                        const std::vector<BodyRecording>& bodies,
                        const std::optional<IdentifiedModel>& physics, double* seconds) {
-  const int observed = settings.observed, seen = SeenByBaselines(observed);
   BodyScores scores;
   for (const BodyRecording& recording : bodies) {
     const double before = Now();
-    const auto generated = GenerateWith(settings, generator, recording, physics);
+    const auto generated =
+        OrFail(GenerateBodies(settings, generator, recording, physics ? &*physics : nullptr));
     *seconds += (Now() - before) / static_cast<double>(bodies.size());
-    const auto score = [&](const char* name, const std::vector<BodyMotion>& forecast, int first) {
-      scores[name].push_back(ScoreBodies(recording, forecast, first));
-    };
-    score("generator", generated, observed);
-    if (observed > 1) score("generator_all_frames", generated, 1);
-    score("static", StaticBodies(recording, seen), observed);
-    score("constant_velocity", ConstantVelocityBodies(recording, seen), observed);
+    ScoreForecast(recording, generated, settings.observed, &scores);
   }
   return scores;
 }
@@ -461,12 +429,8 @@ int FromGroups(const TrainedNetworks& trained, const GenerateOptions& options) {
     std::printf("%s\n%s", BodyText(evaluation).c_str(), TimedErrorsText(evaluation).c_str());
     if (social) std::printf("\n%s", SocialText(*social).c_str());
     if (!Shows()) continue;
-    const std::vector<std::string> figures =
-        social ? SocialFigures(*social, "generator") : std::vector<std::string>();
-    for (const std::string& file :
-         ShowGroup(settings, trained, options, *shown, physics, figures)) {
-      std::printf("%s\n", file.c_str());
-    }
+    ShowGroup(settings, trained, options, *shown, physics,
+              social ? SocialFigures(*social, "generator") : std::vector<std::string>());
   }
   Json json = ResultHead(kScoresSchema);
   json.update(MeanOfSamples(samples));

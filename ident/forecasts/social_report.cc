@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 
 #include "datasets/files/number_text.h"
@@ -13,16 +14,6 @@
 
 namespace pushid {
 namespace {
-
-bool AllBuiltIn(const std::set<std::string>& names) {
-  return std::all_of(names.begin(), names.end(), [](const std::string& name) {
-    return FromName<SocialState>(name).has_value();
-  });
-}
-
-int SymbolOf(const std::vector<std::string>& names, const std::string& name) {
-  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
-}
 
 MaybeError FindByClassifier(const StateTable& table, const std::vector<BodyRecording>& recordings,
                             SocialCues* cues) {
@@ -99,13 +90,8 @@ void AddWords(const MotionWords& words, const Groups& groups, SocialRow* row) {
     const std::vector<double> scores = words.Scores(person);
     sums.resize(std::max(sums.size(), scores.size()));
     counts.resize(sums.size());
-    double of_person = 0.0;
-    for (size_t k = 0; k < scores.size(); ++k) {
-      sums[k] += scores[k];
-      counts[k] += 1.0;
-      of_person += scores[k];
-    }
-    sum += of_person;
+    for (size_t k = 0; k < scores.size(); ++k) sums[k] += scores[k], counts[k] += 1.0;
+    sum += std::accumulate(scores.begin(), scores.end(), 0.0);
     count += static_cast<double>(scores.size());
   }
   if (count > 0.0) row->ndms = sum / count;
@@ -199,7 +185,10 @@ Result<SocialCues> SocialCuesOf(const StateTable& table, const std::vector<std::
     for (const auto& person : states.value().people) names.insert(person.begin(), person.end());
     cues.annotated.push_back(std::move(states.value()));
   }
-  if (AllBuiltIn(names)) return cues;
+  const auto is_built_in = [](const std::string& name) {
+    return FromName<SocialState>(name).has_value();
+  };
+  if (std::all_of(names.begin(), names.end(), is_built_in)) return cues;
   cues.states.names.assign(names.begin(), names.end());
   if (MaybeError error = FindByClassifier(table, recordings, &cues)) return *error;
   return cues;
@@ -210,11 +199,12 @@ GroupMotion RecordedGroup(const BodyRecording& recording, const SocialCues& cues
   const PendulumRecording& pendulum = recording.pendulum;
   GroupMotion group{recording.bodies, pendulum.scene.dt, pendulum.pushed_person, first_frame};
   if (!annotated || cues.annotated.empty()) return group;
-  const RecordedStates& states = cues.annotated[index];
-  for (const std::vector<std::string>& person : states.people) {
-    group.states.emplace_back();
+  const std::vector<std::string>& names = cues.states.names;
+  for (const std::vector<std::string>& person : cues.annotated[index].people) {
+    Symbols& states = group.states.emplace_back();
     for (const std::string& name : person) {
-      group.states.back().push_back(SymbolOf(cues.states.names, name));
+      const auto found = std::find(names.begin(), names.end(), name);
+      states.push_back(static_cast<int>(found - names.begin()));
     }
   }
   return group;
