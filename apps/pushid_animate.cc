@@ -28,14 +28,6 @@ namespace {
 
 using namespace pushid;
 
-void CheckFlags() {
-  Require("id", FLAGS_id, "name a recording of the manifest");
-  if (FLAGS_out.empty() && FLAGS_svg_out.empty()) {
-    throw Error{"--out and --svg_out are missing: name a page (HTML) or a picture (SVG)"};
-  }
-  OrFail(CheckOutputFiles({FLAGS_out, FLAGS_svg_out}));
-}
-
 void Write(const std::string& file, const std::string& content) {
   OrFail(WriteFileAtomically(file, content));
   std::printf("%s\n", file.c_str());
@@ -60,12 +52,12 @@ void Explain(const std::string& who, const PendulumRecording& recording,
   animation->story = AnimatedStory{recording.subject_ids[story.person], std::move(story)};
 }
 
-int LeftDomain(const RolloutStatus& status, const std::string& what) {
-  return Fail((what.empty() ? "" : "with " + what + " ") + OutsideText(status), kFitFailed);
-}
-
 int Run() {
-  CheckFlags();
+  Require("id", FLAGS_id, "name a recording of the manifest");
+  if (FLAGS_out.empty() && FLAGS_svg_out.empty()) {
+    throw Error{"--out and --svg_out are missing: name a page (HTML) or a picture (SVG)"};
+  }
+  OrFail(CheckOutputFiles({FLAGS_out, FLAGS_svg_out}));
   const RestorationFlags flags = RestorationFlagsFromCommandLine("rigid");
   const std::vector<WhatIf> what_ifs = LoadWhatIfs();
   const IdentifiedModel& model = what_ifs.front().model;
@@ -89,7 +81,10 @@ int Run() {
   AddRecorded(InLaboratory(pendulum), seen, &animation);
   for (const WhatIf& one : what_ifs) {
     const Prediction prediction = Predict(one.model, pendulum);
-    if (!prediction.status.ok) return LeftDomain(prediction.status, one.what);
+    if (!prediction.status.ok) {
+      const std::string with = one.what.empty() ? "" : "with " + one.what + " ";
+      return Fail(with + OutsideText(prediction.status), kFitFailed);
+    }
     if (!FLAGS_explain.empty() && !animation.story) {
       Explain(FLAGS_explain, pendulum, prediction, &animation);
     }

@@ -57,29 +57,13 @@ std::vector<Symbols> StatesOfAll(const Groups& groups, const StateFunction& stat
   return all;
 }
 
-size_t LongestOf(const std::vector<Symbols>& all) {
-  size_t longest = 0;
-  for (const Symbols& symbols : all) longest = std::max(longest, symbols.size());
-  return longest;
-}
-
-// Into frame k, of those who last so long.
+// Steps into frame k, of those who last so long.
 std::vector<Symbols> StepsInto(const std::vector<Symbols>& all, size_t k) {
   std::vector<Symbols> steps;
   for (const Symbols& symbols : all) {
     if (k < symbols.size()) steps.push_back({symbols[k - 1], symbols[k]});
   }
   return steps;
-}
-
-ByFrame SscpByFrame(const Eigen::MatrixXd& recorded, const std::vector<Symbols>& all) {
-  ByFrame by_frame;
-  for (size_t k = 1; k < LongestOf(all); ++k) {
-    by_frame.push_back(JensenShannon(
-        recorded,
-        CountTransitions(StepsInto(all, k), static_cast<int>(recorded.rows()), Transitions::kAll)));
-  }
-  return by_frame;
 }
 
 void AddWords(const MotionWords& words, const Groups& groups, SocialRow* row) {
@@ -110,9 +94,14 @@ SocialRow Compared(const std::string& name, const Groups& groups, const SocialRe
   recorded.diagonal().setZero();
   changes.diagonal().setZero();
   row.sscp_changes = JensenShannon(recorded, changes);
-  row.sscp_by_frame = SscpByFrame(report.transitions, counted);
-  for (size_t k = 1; k < LongestOf(counted); ++k) {
-    row.people.push_back(static_cast<int>(StepsInto(counted, k).size()));
+  size_t longest = 0;
+  for (const Symbols& symbols : counted) longest = std::max(longest, symbols.size());
+  for (size_t k = 1; k < longest; ++k) {
+    const std::vector<Symbols> steps = StepsInto(counted, k);
+    row.people.push_back(static_cast<int>(steps.size()));
+    row.sscp_by_frame.push_back(JensenShannon(
+        report.transitions,
+        CountTransitions(steps, report.cues.states.num_symbols(), Transitions::kAll)));
   }
   if (words != nullptr) AddWords(*words, groups, &row);
   return row;

@@ -165,24 +165,16 @@ const Eigen::MatrixXf& ParticleRollout::Step(const Eigen::MatrixXf* noise) {
 }
 
 Eigen::MatrixXf SeenCosines(int observed) {
-  Eigen::MatrixXf cosines(kCorrectionTerms, observed);
-  for (int k = 0; k < kCorrectionTerms; ++k) {
-    for (int t = 0; t < observed; ++t) {
-      cosines(k, t) =
-          static_cast<float>(std::sqrt(2.0 / observed) * std::cos(M_PI * k * (t + 0.5) / observed));
-    }
-  }
-  return cosines;
+  return Eigen::MatrixXf::NullaryExpr(kCorrectionTerms, observed, [=](double k, double t) {
+    return static_cast<float>(std::sqrt(2.0 / observed) *
+                              std::cos(M_PI * k * (t + 0.5) / observed));
+  });
 }
 
 Eigen::MatrixXf CorrectionSines(int frames) {
-  Eigen::MatrixXf sines(kCorrectionTerms, frames);
-  for (int k = 0; k < kCorrectionTerms; ++k) {
-    for (int u = 1; u <= frames; ++u) {
-      sines(k, u - 1) = static_cast<float>(std::sin(M_PI * (k + 0.5) * u / frames));
-    }
-  }
-  return sines;
+  return Eigen::MatrixXf::NullaryExpr(kCorrectionTerms, frames, [=](double k, double before) {
+    return static_cast<float>(std::sin(M_PI * (k + 0.5) * (before + 1.0) / frames));
+  });
 }
 
 void ListTensors(const std::string& prefix, ParticleNetwork* network, TensorFields* fields) {

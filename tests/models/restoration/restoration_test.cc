@@ -207,8 +207,8 @@ TEST(RestorationTest, NetworksSeeTheLengthOfTheFrame) {
   EXPECT_NEAR(PendulumFrames(person, {})(7, 10), now, 1e-6);
   EXPECT_NEAR(PendulumFrames(person, {})(6, 10),
               TipAt(person, 10).z() - person.first_pose(2, kBodyHip), 1e-6);
-  EXPECT_NEAR(WindowInputs({person}, 0, RestorationView::kPendulum)(kWindowPendulumInputs + 2, 10), now,
-              1e-6);
+  EXPECT_NEAR(WindowInputs({person}, 0, RestorationView::kPendulum)(kWindowPendulumInputs + 2, 10),
+              now, 1e-6);
 }
 
 TEST(RestorationTest, OtherFrameRatesAreTheSameMotion) {
