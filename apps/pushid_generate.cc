@@ -1,10 +1,24 @@
 // apps: pushid-generate: motion continued by a learned generator, judged and shown: windows of
 // motion capture, and recorded groups.
+#include <gflags/gflags.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/published_flags.h"
 #include "apps/flags/recording_flags.h"
+#include "apps/support/app_support.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/json_file.h"
+#include "datasets/files/names.h"
+#include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "datasets/loading/generator_data.h"
 #include "ident/bodies/animation.h"
@@ -13,24 +27,23 @@
 #include "ident/forecasts/forecast_scene.h"
 #include "ident/forecasts/forecast_spread.h"
 #include "ident/forecasts/social_report.h"
+#include "ident/generators/generator_files.h"
 #include "ident/model/identified_model.h"
 #include "ident/model/model_json.h"
 #include "ident/model/model_rollout.h"
 #include "ident/problem/parallel.h"
-#include "ident/validation/scores_report.h"
+#include "ident/validation/scores_json.h"
 
 namespace {
 
 using namespace pushid;
 
-// Options that follow from several flags.
+// Values that follow from several flags.
 struct GenerateOptions {
   GeneratorChanges changes;
   int scored_samples = 1;  // of every group, each scored by itself
   ForecastProtocol protocol = ForecastProtocol::kValidation;
 };
-
-constexpr int kStripPoses = 6;
 
 const GenerateOptions kOptions;
 
@@ -93,16 +106,14 @@ void ReadChanges(GeneratorChanges* changes) {
   DiffusionGeneratorOptions& diffusion = changes->diffusion;
   TakeInRange("steps", FLAGS_steps, 1, kDiffusionTime, &diffusion.steps);
   TakeInRange("blend", FLAGS_blend, 0.0, 1.0, &diffusion.blend);
+  const std::map<std::string, bool*> without = {{"ridge", &changes->ridge},
+                                                {"simlpe", &changes->simlpe},
+                                                {"bones", &changes->particles.project_bones}};
   for (const std::string& part : SplitList(FLAGS_without)) {
-    if (part == "ridge") {
-      changes->ridge = false;
-    } else if (part == "simlpe") {
-      changes->simlpe = false;
-    } else if (part == "bones") {
-      changes->particles.project_bones = false;
-    } else {
+    if (without.count(part) == 0) {
       throw Error{"--without names '" + part + "'; it must list ridge, simlpe or bones"};
     }
+    *without.at(part) = false;
   }
 }
 
@@ -122,17 +133,33 @@ void SetPublished(GenerateOptions* options) {
   }
 }
 
+void CheckNumbers() {
+  if (FLAGS_samples != 0) CheckRange("samples", FLAGS_samples, kLeastSamples, 10000);
+  CheckRange("window", FLAGS_window, 0, 1e9);
+  CheckRange("target_window", FLAGS_target_window, -1, 1e9);
+  CheckRange("observed", FLAGS_observed, 0, 1000);
+  CheckRange("frames", FLAGS_frames, 0, 10000);
+  OrFail(CheckPosesPath("--poses_out", FLAGS_poses_out));
+  if (FLAGS_target_window >= 0 && FLAGS_samples == 0) {
+    throw Error{"--target_window needs --samples, among which it looks"};
+  }
+}
+
 // Errors: flags that say something to generators of the other kind alone, or that this kind needs.
 void CheckKindFlags(const GenerateOptions& options, GeneratorKind kind) {
   const bool groups = RowOf(kind).groups;
-  std::vector<std::string> foreign = {"folder",        "action",  "window", "protocol",
+  std::vector<const char*> foreign = {"folder",        "action",  "window", "protocol",
                                       "target_window", "without", "samples"};
   if (!groups) {
     foreign = {"recordings", "setting", "id",      "observed", "physics",
                "frames",     "states",  "csv_out", "steps",    "blend"};
   }
   if (PublishedKind().value_or(kind) != kind) foreign.push_back("published");
-  RefuseGiven(foreign, " has no effect on a generator of " + NameOf(kind), FLAGS_model);
+  for (const char* flag : foreign) {
+    if (!Given(flag)) continue;
+    throw Error{std::string("--") + flag + " has no effect on a generator of " + NameOf(kind),
+                FLAGS_model};
+  }
   if (!groups) return Require("folder", FLAGS_folder, "name the folder of the clips");
   if (Shows()) Require("id", FLAGS_id, "name the recording to show");
   if (options.changes.diffusion.blend > 0.0 && FLAGS_physics.empty()) {
@@ -145,15 +172,7 @@ GenerateOptions OptionsFromCommandLine() {
   GenerateOptions options;
   Require("model", FLAGS_model, "name the folder that pushid-train-generator --out wrote");
   OrFail(ParseName("--protocol", FLAGS_protocol, &options.protocol));
-  if (FLAGS_samples != 0) CheckRange("samples", FLAGS_samples, kLeastSamples, 10000);
-  CheckRange("window", FLAGS_window, 0, 1e9);
-  CheckRange("target_window", FLAGS_target_window, -1, 1e9);
-  CheckRange("observed", FLAGS_observed, 0, 1000);
-  CheckRange("frames", FLAGS_frames, 0, 10000);
-  OrFail(CheckPosesPath("--poses_out", FLAGS_poses_out));
-  if (FLAGS_target_window >= 0 && FLAGS_samples == 0) {
-    throw Error{"--target_window needs --samples, among which it looks"};
-  }
+  CheckNumbers();
   ReadChanges(&options.changes);
   SetPublished(&options);
   options.changes.seed = FLAGS_seed;
@@ -211,8 +230,22 @@ size_t FindWindow(const std::vector<ForecastWindow>& windows, const std::string&
               "; --window and --target_window count from 0"};
 }
 
-// The window's forecast and futures. With --target_window the forecast is the most probable path to
-// that window's end, whose outcome goes to `json`.
+// The scene's forecast becomes the most probable path to the target; its outcome goes to `json`.
+void SearchPath(const Eigen::VectorXf& target, ForecastScene* scene, Json* json) {
+  scene->title += ", towards the end of window " + std::to_string(FLAGS_target_window);
+  const PathChoice choice =
+      OrFail(MostProbablePath(scene->futures, target, kTargetDistance, scene->layout));
+  (*json)["path"] = {{"future", choice.future + 1},
+                     {"near", choice.near},
+                     {"distance_m", choice.distance},
+                     {"log_likelihood", choice.log_likelihood}};
+  std::printf("%d of %d futures end near window %d; the most probable is the %d., %s m from it\n",
+              choice.near, FLAGS_samples, FLAGS_target_window, choice.future + 1,
+              Rounded(choice.distance, 3).c_str());
+  scene->forecast = scene->futures[choice.future].motion;
+}
+
+// The window's forecast and futures; of a search its outcome goes to `json`.
 ForecastScene SceneOfWindow(const MotionGenerator& generator,
                             const std::vector<ForecastWindow>& windows, Json* json) {
   const size_t at = FindWindow(windows, FLAGS_action, FLAGS_window);
@@ -228,29 +261,25 @@ ForecastScene SceneOfWindow(const MotionGenerator& generator,
   if (FLAGS_target_window < 0) return scene;
   const size_t target = FindWindow(windows, FLAGS_action, FLAGS_target_window);
   const Eigen::VectorXf end = windows[target].future.rightCols(1);
-  scene.title += ", towards the end of window " + std::to_string(FLAGS_target_window);
-  const PathChoice choice =
-      OrFail(MostProbablePath(scene.futures, end, kTargetDistance, scene.layout));
-  (*json)["path"] = {{"future", choice.future + 1},
-                     {"near", choice.near},
-                     {"distance_m", choice.distance},
-                     {"log_likelihood", choice.log_likelihood}};
-  std::printf("%d of %d futures end near window %d; the most probable is the %d., %s m from it\n",
-              choice.near, FLAGS_samples, FLAGS_target_window, choice.future + 1,
-              Rounded(choice.distance, 3).c_str());
-  scene.forecast = scene.futures[choice.future].motion;
+  SearchPath(end, &scene, json);
   return scene;
 }
 
-// Writes the files of --svg_out and --html_out, and prints their names behind those of the poses.
-template <typename Strip, typename Page>
-void Show(std::vector<std::string> files, Strip strip, Page page) {
-  if (!FLAGS_svg_out.empty()) OrFail(WriteFileAtomically(FLAGS_svg_out, strip()));
-  if (!FLAGS_html_out.empty()) OrFail(WriteFileAtomically(FLAGS_html_out, page()));
-  files.insert(files.end(), {FLAGS_svg_out, FLAGS_html_out});
-  for (const std::string& file : files) {
-    if (!file.empty()) std::printf("%s\n", file.c_str());
-  }
+// Prints the names of files, and those of --svg_out and --html_out, which it writes.
+void Show(const std::vector<std::string>& files, const Animation& strip, const Animation& page) {
+  for (const std::string& file : files) std::printf("%s\n", file.c_str());
+  const auto write = [](const std::string& file, const std::string& content) {
+    OrFail(WriteFileAtomically(file, content));
+    std::printf("%s\n", file.c_str());
+  };
+  if (!FLAGS_svg_out.empty()) write(FLAGS_svg_out, PoseStrip(strip, kPosesOfStrip).ToString());
+  if (!FLAGS_html_out.empty()) write(FLAGS_html_out, AnimationHtml({page}));
+}
+
+void ShowWindow(const ForecastScene& scene) {
+  std::vector<std::string> files;
+  if (!FLAGS_poses_out.empty()) files = OrFail(WritePoses(FLAGS_poses_out, scene));
+  Show(files, ToAnimation(scene, scene.num_observed() - 1), ToAnimation(scene, 0));
 }
 
 int FromClips(const TrainedNetworks& trained, const GenerateOptions& options) {
@@ -281,32 +310,22 @@ int FromClips(const TrainedNetworks& trained, const GenerateOptions& options) {
   json.update(ToJson(scores));
   json["baselines"]["zero_velocity"] = ToJson(ScoresOf(windows, ZeroVelocity(windows), layout));
   if (Shows() || FLAGS_target_window >= 0) {
-    const ForecastScene scene = SceneOfWindow(*generator, windows, &json);
-    std::vector<std::string> poses;
-    if (!FLAGS_poses_out.empty()) poses = OrFail(WritePoses(FLAGS_poses_out, scene));
-    Show(
-        poses, [&] { return ForecastStripSvg(scene, kStripPoses); },
-        [&] { return ForecastPageHtml(scene); });
+    ShowWindow(SceneOfWindow(*generator, windows, &json));
   }
   json["run"] = {{"seconds_per_window", per_window}};
-  WriteIfNamed(FLAGS_json_out, json);
+  if (FLAGS_json_out.empty()) return kDone;
+  OrFail(WriteJson(FLAGS_json_out, json));
   return kDone;
 }
 
 // Groups forecast and shown.
 
-// A recording's forecast by a generator of any kind, to its end or for `frames` frames in all;
-// the generator gets physics that see as many frames.
-std::vector<BodyMotion> GenerateWith(const GeneratorSettings& settings,
-                                     const MotionGenerator& generator,
-                                     const BodyRecording& recording,
-                                     const std::optional<IdentifiedModel>& physics,
-                                     int frames = 0) {
-  GroupHips hips;
-  if (physics) {
-    hips = PendulumHips(recording, OrFail(PredictBeside(settings, *physics, recording, frames)));
-  }
-  return OrFail(GenerateBodies(settings, generator, recording, hips, frames));
+// The model of --physics; nothing where none is named.
+std::optional<IdentifiedModel> LoadPhysics() {
+  if (FLAGS_physics.empty()) return std::nullopt;
+  IdentifiedModel model = ModelOf(OrFail(ReadFittedModel(FLAGS_physics)).fit);
+  model.source = FLAGS_physics;
+  return model;
 }
 
 // The states of --states, or the built-in ones; writes --csv_out.
@@ -325,14 +344,14 @@ SocialCues FlaggedCues(const std::vector<BodyRecording>& recordings) {
   return cues;
 }
 
-// Writes the files of --poses_out, --svg_out and --html_out: everybody recorded, forecast, and
-// beside them the pendulums of the physics; the page shows the figures too.
+// Shows everybody recorded, forecast, and beside them the pendulums of the physics; the page has
+// the figures too.
 void ShowGroup(const GeneratorSettings& settings, const TrainedNetworks& trained,
                const GenerateOptions& options, const BodyRecording& recording,
                const std::optional<IdentifiedModel>& physics,
                const std::vector<std::string>& figures) {
-  const auto bodies =
-      GenerateWith(settings, *trained.Make(options.changes), recording, physics, FLAGS_frames);
+  const auto bodies = OrFail(GenerateBodies(settings, *trained.Make(options.changes), recording,
+                                            physics ? &*physics : nullptr, FLAGS_frames));
   Animation animation;
   animation.title = recording.pendulum.id + ", " + NameOf(trained.kind());
   animation.dt = recording.pendulum.scene.dt;
@@ -344,44 +363,45 @@ void ShowGroup(const GeneratorSettings& settings, const TrainedNetworks& trained
     const Prediction predicted = OrFail(PredictBeside(settings, *physics, recording, FLAGS_frames));
     AddPrediction(recording.pendulum, predicted, {}, &animation);
   }
-  std::vector<std::string> files = {FLAGS_poses_out};
-  if (IsBodyFile(FLAGS_poses_out)) {
-    files = OrFail(WriteBodyBvh(FLAGS_poses_out, SceneOf(recording, bodies)));
-  } else if (!FLAGS_poses_out.empty()) {
-    OrFail(WriteJointsCsv(FLAGS_poses_out, SceneOf(recording, bodies)));
+  std::vector<std::string> files;
+  const std::string& poses = FLAGS_poses_out;
+  const BodyScene scene = SceneOf(recording, bodies);
+  if (IsBodyFile(poses)) {
+    files = OrFail(WriteBodyBvh(poses, scene));
+  } else if (!poses.empty()) {
+    OrFail(WriteJointsCsv(poses, scene));
+    files = {poses};
   }
-  Show(
-      files, [&] { return PoseStrip(animation, kStripPoses).ToString(); },
-      [&] { return AnimationHtml({animation}); });
+  Show(files, animation, animation);
+}
+
+// Once for all recordings whose pushes are of such kinds.
+void WarnOfPushKinds(const GeneratorSettings& settings,
+                     const std::vector<BodyRecording>& recordings) {
+  std::set<std::string> told;
+  for (const BodyRecording& recording : recordings) {
+    const std::string other = OtherPushKinds(settings, recording.pendulum.scene);
+    if (!other.empty() && told.insert(other).second) LOG(WARNING) << other;
+  }
 }
 
 // The forecasts of one generator, and of the baselines.
 BodyScores ScoreGroups(const GeneratorSettings& settings, const MotionGenerator& generator,
                        const std::vector<BodyRecording>& bodies,
                        const std::optional<IdentifiedModel>& physics, double* seconds) {
-  const int observed = settings.observed, seen = SeenByBaselines(observed);
   BodyScores scores;
   for (const BodyRecording& recording : bodies) {
     const double before = Now();
-    const auto generated = GenerateWith(settings, generator, recording, physics);
+    const auto generated =
+        OrFail(GenerateBodies(settings, generator, recording, physics ? &*physics : nullptr));
     *seconds += (Now() - before) / static_cast<double>(bodies.size());
-    const auto score = [&](const char* name, const std::vector<BodyMotion>& forecast, int first) {
-      scores[name].push_back(ScoreBodies(recording, forecast, first));
-    };
-    score("generator", generated, observed);
-    if (observed > 1) score("generator_all_frames", generated, 1);
-    score("static", StaticBodies(recording, seen), observed);
-    score("constant_velocity", ConstantVelocityBodies(recording, seen), observed);
+    ScoreForecast(recording, generated, settings.observed, &scores);
   }
   return scores;
 }
 
 int FromGroups(const TrainedNetworks& trained, const GenerateOptions& options) {
-  std::optional<IdentifiedModel> physics;
-  if (!FLAGS_physics.empty()) {
-    physics = ModelOf(OrFail(ReadFittedModel(FLAGS_physics)).fit);
-    physics->source = FLAGS_physics;
-  }
+  const std::optional<IdentifiedModel> physics = LoadPhysics();
   const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
   const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings));
   const BodyRecording* shown = nullptr;
@@ -393,11 +413,7 @@ int FromGroups(const TrainedNetworks& trained, const GenerateOptions& options) {
   }
   GeneratorSettings settings = trained.settings;
   if (FLAGS_observed > 0) settings.observed = FLAGS_observed;
-  std::set<std::string> kinds;  // each is warned of once
-  for (const BodyRecording& recording : bodies) {
-    const std::string other = OtherPushKinds(settings, recording.pendulum.scene);
-    if (!other.empty() && kinds.insert(other).second) LOG(WARNING) << other;
-  }
+  WarnOfPushKinds(settings, bodies);
   const SocialCues cues = FlaggedCues(bodies);
   double seconds = 0.0;
   std::vector<Json> samples;
@@ -423,8 +439,9 @@ int FromGroups(const TrainedNetworks& trained, const GenerateOptions& options) {
         "\n%d samples, each scored, in the mean: %s\n", options.scored_samples,
         MetricsText(kBodyMetrics, OrFail(MeanMetrics(json, kBodyMetrics, FLAGS_model)), 3).c_str());
   }
+  if (FLAGS_json_out.empty()) return kDone;
   json["run"] = {{"seconds_per_recording", seconds}};
-  WriteIfNamed(FLAGS_json_out, json);
+  OrFail(WriteJson(FLAGS_json_out, json));
   return kDone;
 }
 

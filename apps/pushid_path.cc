@@ -1,6 +1,16 @@
 // apps: pushid-path: most probable paths under a model's process noise.
+#include <gflags/gflags.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
+#include "datasets/files/json_file.h"
+#include "datasets/files/names.h"
+#include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/forecasts/most_probable_path.h"
 
@@ -22,26 +32,19 @@ namespace {
 
 using namespace pushid;
 
-struct Ends {
-  PathEnd from;
-  std::vector<PathEnd> to;         // of which the most probable one is found
-  std::vector<std::string> names;  // as they were given
-};
-
-Ends ReadEnds() {
-  Ends ends;
-  ends.from = OrFail(ParsePathEnd("--from", FLAGS_from, true));
+// The ends of --to, among which the most probable one is found, by their texts.
+std::vector<std::pair<std::string, PathEnd>> ReadEnds() {
+  std::vector<std::pair<std::string, PathEnd>> ends;
   for (const std::string& text : SplitList(FLAGS_to, ';')) {
     const std::string name(Trimmed(text));
     const PathEnd to = OrFail(ParsePathEnd("--to", name, false));
     if (name.empty()) throw Error{"--to has an empty end; a person at rest upright is x=0,xd=0"};
-    if (!ends.to.empty() && to.rates_held != ends.to.front().rates_held) {
+    if (!ends.empty() && to.rates_held != ends.front().second.rates_held) {
       throw Error{
           "--to fixes velocities in some ends and leaves them free in others, so their "
           "probabilities cannot be compared; name a velocity in all ends or in none"};
     }
-    ends.to.push_back(to);
-    ends.names.push_back(name);
+    ends.emplace_back(name, to);
   }
   Require("to", FLAGS_to, "give the final state, as in --to=x=0.5,xd=0");
   return ends;
@@ -49,7 +52,8 @@ Ends ReadEnds() {
 
 int Run() {
   RequireModel();
-  const Ends ends = ReadEnds();
+  const PathEnd from = OrFail(ParsePathEnd("--from", FLAGS_from, true));
+  const auto ends = ReadEnds();
   CheckRange("frames", FLAGS_frames, 6, 100000);
   CheckRange("fps", FLAGS_fps, 10, 10000);
   CheckRange("mass", FLAGS_mass, 5, 500);
@@ -58,33 +62,32 @@ int Run() {
   const IdentifiedModel model = LoadFlaggedModel();
   TextTable table = TextTable::OfNumbers({"end", "action", "of noise", "of divergence"});
   nlohmann::ordered_json json = ResultHead("pushid-path/1");
-  size_t best = 0;
-  std::vector<ProbablePath> paths;
-  for (size_t i = 0; i < ends.to.size(); ++i) {
-    ProbablePath found = OrFail(PathBetween(model, {FLAGS_mass, FLAGS_rod, 0.0}, FLAGS_fps,
-                                            ends.from, ends.to[i], FLAGS_frames));
-    table.Add({ends.names[i], Rounded(found.action(), 4), Rounded(found.noise_action, 4),
+  std::string best_end;
+  ProbablePath best;
+  for (const auto& [end, to] : ends) {
+    ProbablePath found =
+        OrFail(PathBetween(model, {FLAGS_mass, FLAGS_rod, 0.0}, FLAGS_fps, from, to, FLAGS_frames));
+    table.Add({end, Rounded(found.action(), 4), Rounded(found.noise_action, 4),
                Rounded(found.divergence_action, 4)});
     json["paths"].push_back({{"action", found.action()},
                              {"noise_action", found.noise_action},
                              {"divergence_action", found.divergence_action},
-                             {"end", ends.names[i]}});
-    paths.push_back(std::move(found));
-    if (paths[i].action() < paths[best].action()) best = i;
+                             {"end", end}});
+    if (best_end.empty() || found.action() < best.action()) {
+      best_end = end, best = std::move(found);
+    }
   }
-  json["most_probable"] = ends.names[best];
+  json["most_probable"] = best_end;
   std::printf("%s", table.ToString().c_str());
-  if (paths.size() > 1) {
-    std::printf("most probable: %s\n", ends.names[best].c_str());
-  }
+  if (ends.size() > 1) std::printf("most probable: %s\n", best_end.c_str());
   std::printf(
       "action: -log probability density of the path, up to a constant that depends on its "
       "frames\n");
   if (!FLAGS_out.empty()) {
-    OrFail(WritePathCsv(FLAGS_out, paths[best], 1.0 / FLAGS_fps));
-    std::printf("%d frames written to %s\n", FLAGS_frames, FLAGS_out.c_str());
+    OrFail(WritePathCsv(FLAGS_out, best, 1.0 / FLAGS_fps));
+    std::printf("%d frames written to %s\n", best.states.num_frames(), FLAGS_out.c_str());
   }
-  WriteIfNamed(FLAGS_json_out, json);
+  if (!FLAGS_json_out.empty()) OrFail(WriteJson(FLAGS_json_out, json));
   return kDone;
 }
 

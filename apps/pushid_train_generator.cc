@@ -1,37 +1,35 @@
 // apps: pushid-train-generator: learned generators of motion.
-#include "apps/flags/command_line.h"
+#include <gflags/gflags.h>
+
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
 #include "apps/flags/published_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "ident/bodies/body_evaluation.h"
+#include "apps/flags/training_flags.h"
+#include "datasets/files/names.h"
 #include "ident/model/model_json.h"
-#include "ident/problem/folds.h"
 #include "ident/training/generator_training.h"
-#include "ident/training/restoration_training.h"
-#include "ident/validation/scores_report.h"
 
 namespace {
 
 using namespace pushid;
 
-// Options that follow from several flags.
+// Values that follow from several flags.
 struct TrainGeneratorFlags {
   GeneratorTrainingOptions options;
   bool hold_out = true;  // validation clips, or a share of the recordings, show how it goes
   int phases = 2;        // of every clip, whose every second frame is one of the protocol
-  FoldScheme scheme = FoldScheme::kStratified;
-  std::optional<FitOptions> physics;  // of the pendulum
-  GeneratorChanges changes;           // how held-out recordings are forecast
+  GeneratorValidationOptions validation;
 };
 
 const TrainGeneratorFlags kFlags;
-const GeneratorTrainingOptions kOptions;
-const std::string kKind = [] {
-  std::vector<std::string> kinds;
-  for (const GeneratorKindRow& row : kGeneratorKinds) {
-    kinds.push_back(std::string(row.name) + " (" + row.what + ")");
-  }
-  return "kind of generator: " + Joined(kinds, " or ");
-}();
+const pushid::GeneratorTrainingOptions kOptions;
+const std::string kKind = KindHelp("generator", kGeneratorKinds, [](const auto&) { return true; });
 }  // namespace
 
 DEFINE_string(kind, pushid::NameOf(kOptions.kind), kKind.c_str());
@@ -45,20 +43,12 @@ DEFINE_int32(
     observed, 1,
     "diffusion: number of observed frames in use and in scoring; 1: the first poses and the "
     "push");
-DEFINE_string(out, "", "folder to write: generator.json, weights.npy, curve.svg");
-DEFINE_string(scheme, NameOf(FoldScheme::kStratified),
-              "--crossvalidate: stratified (folds by setting, strength and subject) or interleaved "
-              "(recordings of a setting assigned to folds in turn)");
-DEFINE_int32(crossvalidate, 0,
-             "diffusion: number of folds: instead of writing a generator, train in every fold and "
-             "score the held-out recordings; 0: off");
 DEFINE_string(physics, "",
               "diffusion: model that pushid-fit --model_out wrote; its pendulum is refitted to the "
               "training recordings, for --blend");
 DEFINE_double(
-    blend, kFlags.changes.diffusion.blend,
+    blend, kFlags.validation.changes.diffusion.blend,
     "diffusion, --crossvalidate: blend of the hip paths, from 0 (forecast) to 1 (pendulum)");
-DEFINE_string(json_out, "", "--crossvalidate: write the scores here (JSON)");
 DEFINE_int32(seeds, 0,
              "number of networks of different seeds that are averaged; 0: default of the kind");
 DEFINE_int32(steps, 0, "training steps (particles: of the drift) per seed; 0: default of the kind");
@@ -77,10 +67,6 @@ DEFINE_string(
     "in and come out), operator (poses come out), gru (an LSTM instead), noise (and Eq. 6), draw "
     "(Eq. 6 with its determinant instead), bones (Eq. 11), critic (Eq. 12), protocol (also the "
     "frames between those of the protocol, but not the last clip of every action)");
-DEFINE_uint64(seed, kOptions.seed, "the first of --seeds, and the seed of the folds");
-DEFINE_int32(num_threads, kOptions.num_threads,
-             "threads of the training; only a single thread is bit-reproducible");
-
 namespace {
 
 // Lyu et al., ACM MM 2021: particles alone, f and g trained together by Eq. 6 as printed, Eq.
@@ -101,33 +87,31 @@ void SetSde(TrainGeneratorFlags* flags) {
   sde.squared = 10.0;
   sde.bones = 1.0;
   sde.critic = 0.001;
+  const std::map<std::string, std::function<void()>> without = {
+      {"particles",
+       [&] {
+         sde.structure.particles = sde.structure.summed = false;
+         sde.structure.poses = true;
+       }},
+      {"operator", [&] { sde.structure.summed = false; }},
+      {"gru", [&] { sde.structure.lstm = true; }},
+      {"noise",
+       [&] {
+         sde.together = sde.structure.noisy_input = false;
+         sde.noise_steps = 0;
+         sde.noise_loss = NoiseLoss::kLikelihood;  // where --noise_steps trains it by itself
+       }},
+      {"draw", [&] { sde.noise_loss = NoiseLoss::kLikelihood; }},
+      {"bones", [&] { sde.bones = 0.0; }},
+      {"critic", [&] { sde.critic = 0.0; }},
+      {"protocol", [&] { flags->phases = 2, flags->hold_out = true; }}};
   for (const std::string& part : SplitList(FLAGS_without)) {
-    if (part == "particles") {
-      sde.structure.particles = sde.structure.summed = false;
-      sde.structure.poses = true;
-    } else if (part == "operator") {
-      sde.structure.summed = false;
-    } else if (part == "gru") {
-      sde.structure.lstm = true;
-    } else if (part == "noise") {
-      sde.together = false;
-      sde.noise_steps = 0;
-      sde.noise_loss = NoiseLoss::kLikelihood;  // where --noise_steps trains it by itself
-      sde.structure.noisy_input = false;
-    } else if (part == "draw") {
-      sde.noise_loss = NoiseLoss::kLikelihood;
-    } else if (part == "bones") {
-      sde.bones = 0.0;
-    } else if (part == "critic") {
-      sde.critic = 0.0;
-    } else if (part == "protocol") {
-      flags->phases = 2;
-      flags->hold_out = true;
-    } else {
+    if (without.count(part) == 0) {
       throw Error{
           "--without names '" + part +
           "'; it must list particles, operator, gru, noise, draw, bones, critic or protocol"};
     }
+    without.at(part)();
   }
 }
 
@@ -168,7 +152,7 @@ void ReadNumbers(TrainGeneratorFlags* flags) {
   CheckRange("steps", FLAGS_steps, 0, 1e6);
   CheckRange("batch", FLAGS_batch, 0, 4096);
   CheckRange("observed", FLAGS_observed, 1, 1000);
-  TakeInRange("blend", FLAGS_blend, 0.0, 1.0, &flags->changes.diffusion.blend);
+  TakeInRange("blend", FLAGS_blend, 0.0, 1.0, &flags->validation.changes.diffusion.blend);
   TakeInRange("num_threads", FLAGS_num_threads, 1, 1024, &options.num_threads);
   TakeInRange("simlpe_steps", FLAGS_simlpe_steps, 1, 1e6, &options.simlpe.steps);
   CheckRange("noise_steps", FLAGS_noise_steps, 0, 1e6);
@@ -190,16 +174,20 @@ void ReadNumbers(TrainGeneratorFlags* flags) {
 
 // Flags of another kind would do nothing.
 void CheckKind(const GeneratorKindRow& kind) {
+  const auto refuse = [](std::initializer_list<const char*> flags, const std::string& goes_with) {
+    for (const char* flag : flags) {
+      if (Given(flag)) throw Error{std::string("--") + flag + " needs " + goes_with};
+    }
+  };
   if (kind.groups) {
-    RefuseGiven({"folder", "noise_steps", "simlpe_steps"},
-                " needs --kind=" + NameOf(GeneratorKind::kParticles));
+    refuse({"folder", "noise_steps", "simlpe_steps"},
+           "--kind=" + NameOf(GeneratorKind::kParticles));
   } else {
-    RefuseGiven(
-        {"recordings", "setting", "observed", "crossvalidate", "physics", "blend", "pooling"},
-        " needs --kind=" + KindsOfGroups());
+    refuse({"recordings", "setting", "observed", "crossvalidate", "physics", "blend", "pooling"},
+           "--kind=" + KindsOfGroups());
     Require("folder", FLAGS_folder, "name the folder of the clips");
   }
-  if (FLAGS_crossvalidate == 0) RefuseGiven({"blend", "physics"}, " needs --crossvalidate");
+  if (FLAGS_crossvalidate == 0) refuse({"blend", "physics"}, "--crossvalidate");
   if (FLAGS_blend > 0.0 && FLAGS_physics.empty()) {
     throw Error{"--blend needs --physics, the pendulum's model"};
   }
@@ -207,10 +195,6 @@ void CheckKind(const GeneratorKindRow& kind) {
     throw Error{"--physics does nothing without --blend; give --blend=0.5"};
   }
   if (kind.groups) CheckRecordingFlags();
-  if (FLAGS_crossvalidate != 0 && FLAGS_crossvalidate < 2) {
-    throw Error{"--crossvalidate must be 0 or at least 2 folds"};
-  }
-  if (FLAGS_crossvalidate == 0) Require("out", FLAGS_out, "name the folder to write");
 }
 
 TrainGeneratorFlags TrainGeneratorFlagsFromCommandLine() {
@@ -220,65 +204,41 @@ TrainGeneratorFlags TrainGeneratorFlagsFromCommandLine() {
   options.seeds = RowOf(options.kind).seeds;
   ReadPublished(&flags);
   ReadNumbers(&flags);
-  OrFail(ParseName("--scheme", FLAGS_scheme, &flags.scheme));
-  if (FLAGS_crossvalidate == 0 && Given("scheme")) throw Error{"--scheme needs --crossvalidate"};
   CheckKind(RowOf(options.kind));
+  static_cast<FoldChoice&>(flags.validation) = FoldsFromCommandLine();
+  flags.validation.observed = FLAGS_observed;
   OrFail(CheckOutputFiles({FLAGS_json_out}));
   if (Given("hold_out")) flags.hold_out = FLAGS_hold_out;
   options.seed = FLAGS_seed;
   if (FLAGS_physics.empty()) return flags;
   const FittedModel physics = OrFail(ReadFittedModel(FLAGS_physics));
-  flags.physics = physics.fit.options;
-  flags.physics->num_threads = FLAGS_num_threads;
+  flags.validation.physics = physics.fit.options;
+  flags.validation.physics->num_threads = FLAGS_num_threads;
   return flags;
 }
+
 using Json = nlohmann::ordered_json;
 
-std::string Inside(const std::string& folder, const char* name) {
-  return (std::filesystem::path(folder) / name).string();
-}
-
-int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecording>& recordings) {
-  TrainingLine line;
-  const GeneratorValidation validation = OrFail(CrossValidateGenerator(
-      recordings, flags.options,
-      {FLAGS_observed, flags.scheme, FLAGS_crossvalidate, flags.physics, flags.changes},
-      [&](const std::string& step, double done) { line.Show(step, done); }));
-  line.Finish();
-  std::printf("%s", BodyText(validation.evaluation).c_str());
-  Json json = ResultHead(kScoresSchema);
-  AddBodyJson(validation.evaluation, &json);
-  json["run"] = {{"training_seconds", validation.training_seconds}};
-  WriteIfNamed(FLAGS_json_out, json);
-  return kDone;
-}
-
-// data: which clips or recordings, by name and hash.
+// data: the clips or recordings, by name and hash.
 int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json& data) {
   SetForData(samples, &flags.options);
   flags.options.configuration = Json{Version(), EffectiveFlags()}.dump();
-  flags.options.checkpoint = Inside(FLAGS_out, "checkpoint.bin");
-  OrFail(CheckWritable(flags.options.checkpoint));
-  SayWhenTrainingInterrupted(FLAGS_out);
+  flags.options.checkpoint = MakeOut();
   TrainingLine line;
   TrainedGenerator trained =
       OrFail(TrainGenerator(samples, flags.options, [&](const TrainingPoint& point, double done) {
         line.Show(point.stage + ", step " + std::to_string(point.epoch), done);
       }));
   line.Finish();
-  GeneratorSettings& settings = trained.networks.settings;
-  settings.training = Json{{"version", Version()}, {"configuration", EffectiveFlags()}};
-  (*settings.training)["data"] = data;
-  (*settings.training)["curve"] = CurveJson(trained.curve);
+  Json training = TrainingJson("data", data);
+  training["curve"] = CurveJson(trained.curve);
+  trained.networks.settings.training = training;
   const std::string title =
       NameOf(flags.options.kind) + ", " + std::to_string(data.size()) + " motions";
-  OrFail(
-      WriteFileAtomically(Inside(FLAGS_out, "curve.svg"), TrainingCurveSvg(trained.curve, title)));
+  WriteCurve(trained, title);
   OrFail(WriteGenerator(FLAGS_out, trained.networks));
-  std::printf("%s: %d seeds, %s s%s; %s\n", title.c_str(), flags.options.seeds,
-              Rounded(line.Seconds(), 3).c_str(),
-              trained.resumed ? " (resumed from a checkpoint)" : "",
-              Inside(FLAGS_out, "generator.json").c_str());
+  std::printf("%s: %d seeds, %s; %s\n", title.c_str(), flags.options.seeds,
+              TimeText(line, trained).c_str(), InOut("generator.json").c_str());
   return kDone;
 }
 
@@ -286,7 +246,6 @@ constexpr double kHeldOut = 0.15;  // share of the recordings that only show how
 
 int FromClips(const TrainGeneratorFlags& flags) {
   const MocapFolder mocap = OrFail(ReadMocapFolder(FLAGS_folder));
-  OrFail(MakeFolder(FLAGS_out));
   Json data = Json::array();
   for (const MocapClip& clip : mocap.clips) {
     if (clip.is_test) continue;
@@ -297,20 +256,19 @@ int FromClips(const TrainGeneratorFlags& flags) {
 
 int FromGroups(const TrainGeneratorFlags& flags) {
   const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
-  if (flags.physics) CheckPushed(recordings);  // groups move without a push too
+  if (flags.validation.physics) CheckPushed(recordings);  // groups move without a push too
   const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings));
-  if (FLAGS_crossvalidate > 0) return CrossValidate(flags, bodies);
-  OrFail(MakeFolder(FLAGS_out));
-  Json data = Json::array();
+  if (FLAGS_crossvalidate > 0) {
+    return ScoreFolds([&](const RunProgress& progress) {
+      return CrossValidateGenerator(bodies, flags.options, flags.validation, progress);
+    });
+  }
   const std::vector<int> all = Others({}, static_cast<int>(bodies.size()));
   std::vector<int> learnt = all, held;
-  for (const BodyRecording& body : bodies) {
-    data.push_back({{"id", body.pendulum.id}, {"content_hash", body.pendulum.content_hash}});
-  }
   if (flags.hold_out && all.size() > 1) {
     SplitHeldOut(PendulumsOf(bodies), all, kHeldOut, flags.options.seed, &learnt, &held);
   }
-  return Train(flags, SamplesOf(bodies, learnt, held, FLAGS_observed), data);
+  return Train(flags, SamplesOf(bodies, learnt, held, FLAGS_observed), JsonOfData(bodies));
 }
 
 int Run() {

@@ -23,30 +23,6 @@
 namespace pushid {
 namespace {
 
-// A JSON document as Python objects; texts that stand for infinity and NaN become numbers.
-py::object FromJson(const nlohmann::ordered_json& json) {
-  if (json.is_null()) return py::none();
-  if (json.is_boolean()) return py::bool_(json.get<bool>());
-  if (json.is_number_integer()) return py::int_(json.get<std::int64_t>());
-  if (json.is_number()) return py::float_(json.get<double>());
-  if (json.is_string()) {
-    const std::string text = json.get<std::string>();
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    if (text == "infinity") return py::float_(kInfinity);
-    if (text == "-infinity") return py::float_(-kInfinity);
-    if (text == "nan") return py::float_(std::nan(""));
-    return py::str(text);
-  }
-  if (json.is_array()) {
-    py::list list;
-    for (const auto& item : json) list.append(FromJson(item));
-    return std::move(list);
-  }
-  py::dict dict;
-  for (const auto& [key, value] : json.items()) dict[py::str(key)] = FromJson(value);
-  return std::move(dict);
-}
-
 using Advised = std::vector<std::pair<std::string, std::string>>;
 
 // The model with its advice as calls.
@@ -62,12 +38,6 @@ std::string Text(const Model& model, const Advised& calls) {
   screen.rest = "the rest: result.details; a page: result.report; all numbers: result.json";
   return InPython(screen.ToString());
 }
-
-std::string Details(const Model& model, const Advised& calls) {
-  return InPython(DetailsText(InCalls(model, calls)));
-}
-
-std::string JsonText(const Model& model) { return ToJson(*model.fitted, RunInfo()).dump(); }
 
 std::shared_ptr<const FittedTo> Data(const std::vector<SharedRecording>& recordings) {
   return std::make_shared<const FittedTo>(FittedTo{recordings, Pendulums(recordings)});
@@ -159,12 +129,6 @@ std::shared_ptr<Model> WithoutData(Result<FittedModel> read) {
   return model;
 }
 
-std::shared_ptr<Model> Load(const std::string& path) { return WithoutData(ReadFittedModel(path)); }
-
-std::shared_ptr<Model> FromText(const std::string& text) {
-  return WithoutData(FittedModelFromJson(nlohmann::ordered_json::parse(text), "pickle"));
-}
-
 void Save(const Model& model, const std::string& path) {
   char date[32];
   const std::time_t now = std::time(nullptr);
@@ -199,36 +163,33 @@ void WriteReport(const Model& model, const std::string& path, const Advised& cal
   Check(WriteFileAtomically(path, ToPage(ReportOf(*fitted, model))), Fault::kData);
 }
 
-// The scores, and the text of the program that prints them.
-py::tuple WithText(const nlohmann::ordered_json& json, const std::string& text) {
-  return py::make_tuple(FromJson(json), text);
-}
+// Scores as the text of their JSON, and the text of the program that prints them.
+using ScoresAndText = std::pair<std::string, std::string>;
 
-py::tuple EvaluateOn(const Model& model, const std::vector<SharedRecording>& recordings,
-                     int observed, const std::string& forecast) {
+ScoresAndText EvaluateOn(const Model& model, const std::vector<SharedRecording>& recordings,
+                         int observed, const std::string& forecast) {
   const IdentifiedModel identified = IdentifiedOf(model);
   const auto pendulums = Pendulums(recordings);
   if (observed > 0) Check(CheckObserved(pendulums, observed), Fault::kUsage);
-  const ForecastUse use = ForecastFrom(forecast);
+  const ForecastUse use = Named<ForecastUse>("forecast", forecast);
   const Evaluation evaluation =
       WithoutGil([&] { return Evaluate(identified, pendulums, observed, UsualGroups(), use); });
-  return WithText(ToJson(evaluation), EvaluationText(evaluation, false));
+  return {ToJson(evaluation).dump(), EvaluationText(evaluation, false)};
 }
 
-py::tuple CrossValidateAll(const std::vector<SharedRecording>& recordings,
-                           const std::vector<std::pair<std::string, GivenOptions>>& candidates,
-                           const std::string& scheme, int num_folds, int repeats, uint64_t seed,
-                           int observed, const std::string& forecast, bool baselines,
-                           int num_threads, const py::object& progress) {
+ScoresAndText CrossValidateAll(const std::vector<SharedRecording>& recordings,
+                               const std::vector<std::pair<std::string, GivenOptions>>& candidates,
+                               const std::string& scheme, int num_folds, int repeats, uint64_t seed,
+                               int observed, const std::string& forecast, bool baselines,
+                               int num_threads, const py::object& progress) {
   CheckRecordings(recordings);
-  FoldScheme how = FoldScheme::kStratified;
-  Check(ParseName("scheme", scheme, &how), Fault::kUsage);
   const auto pendulums = Pendulums(recordings);
   std::vector<Predictor> predictors;
   for (const auto& [name, given] : candidates) {
     const FitSetup setup = Setup(given);
     predictors.push_back(ModelPredictor(name, Unwrapped(setup.For(pendulums), Fault::kUsage),
-                                        observed, FramesUse::kForecast, ForecastFrom(forecast)));
+                                        observed, FramesUse::kForecast,
+                                        Named<ForecastUse>("forecast", forecast)));
   }
   if (baselines) {
     for (const Baseline& baseline : kBaselines) {
@@ -236,7 +197,9 @@ py::tuple CrossValidateAll(const std::vector<SharedRecording>& recordings,
       predictors.push_back(BaselinePredictor(baseline, observed));
     }
   }
-  const auto folds = Unwrapped(MakeFolds(pendulums, how, num_folds, repeats, seed), Fault::kUsage);
+  const auto folds =
+      Unwrapped(MakeFolds(pendulums, Named<FoldScheme>("scheme", scheme), num_folds, repeats, seed),
+                Fault::kUsage);
   const JobProgress report = JobsOf(progress);
   const auto validated = WithoutGil([&] {
     std::vector<CrossValidation> all;
@@ -247,7 +210,7 @@ py::tuple CrossValidateAll(const std::vector<SharedRecording>& recordings,
   });
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const CrossValidation& one : validated) json.push_back(ToJson(one));
-  return WithText(json, CrossValidationText(validated));
+  return {json.dump(), CrossValidationText(validated)};
 }
 
 // name, help, default: what the keyword arguments are made from.
@@ -279,37 +242,6 @@ void Extend(Model* model, Add add) {
 
 using PendulumRecordings = std::vector<PendulumRecording>;
 
-void ProfilesOf(Model* model, const std::vector<std::string>& names, int num_threads,
-                const py::object& progress) {
-  const JobProgress report = JobsOf(progress);
-  Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
-    return AddProfiles(recordings, names, num_threads, report, fitted);
-  });
-}
-
-void BootstrapOf(Model* model, int replicas, uint64_t seed, int num_threads,
-                 const py::object& progress) {
-  const BootstrapOptions options{replicas, seed, num_threads};
-  const JobProgress report = JobsOf(progress);
-  Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
-    return AddBootstrap(recordings, options, report, fitted);
-  });
-}
-
-void CheckHorizonsOf(Model* model, int num_threads, const py::object& progress) {
-  const JobProgress report = JobsOf(progress);
-  Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
-    AddHorizonCheck(recordings, num_threads, report, fitted);
-    return MaybeError();
-  });
-}
-
-void LearnForecastsOf(Model* model, int num_threads) {
-  Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
-    return AddForecasts(recordings, num_threads, fitted);
-  });
-}
-
 using Json = nlohmann::ordered_json;
 
 // A number for each name; none where there are none.
@@ -332,7 +264,7 @@ Json PushesJson(const ExperimentDesign& design) {
   return rows;
 }
 
-py::object DesignOf(const Model& model, const std::string& parameter) {
+std::string DesignOf(const Model& model, const std::string& parameter) {
   const std::shared_ptr<const FittedTo> to = DataOf(model);
   const std::shared_ptr<const FittedModel> fitted = model.fitted;
   Result<ExperimentDesign> design =
@@ -347,7 +279,7 @@ py::object DesignOf(const Model& model, const std::string& parameter) {
     }
     json["pushes"] = PushesJson(design.value());
   }
-  return FromJson(json);
+  return json.dump();
 }
 
 // fields(item) of each as a tuple.
@@ -408,9 +340,10 @@ IdentifiedModel IdentifiedOf(const Model& model) { return ModelOf(model.fitted->
 
 void BindFits(py::module_* module) {
   py::class_<Model, std::shared_ptr<Model>>(*module, "Model")
-      .def("json", &JsonText)
+      .def("json", [](const Model& m) { return ToJson(*m.fitted, RunInfo()).dump(); })
       .def("text", &Text)
-      .def("details", &Details)
+      .def("details", [](const Model& m,
+                         const Advised& calls) { return InPython(DetailsText(InCalls(m, calls))); })
       .def_property_readonly("converged", [](const Model& m) { return m.fitted->fit.converged; })
       .def_property_readonly("warnings",
                              [](const Model& m) { return InPython(m.fitted->fit.warnings); })
@@ -428,14 +361,36 @@ void BindFits(py::module_* module) {
       .def("attach", &Attach)
       .def("evaluate", &EvaluateOn);
   module->def("fit", &FitModel);
-  module->def("load", &Load);
-  module->def("from_json", &FromText);
+  module->def("load", [](const std::string& path) { return WithoutData(ReadFittedModel(path)); });
+  module->def("from_json", [](const std::string& text) {
+    return WithoutData(FittedModelFromJson(nlohmann::ordered_json::parse(text), "pickle"));
+  });
   module->def("crossvalidate", &CrossValidateAll);
   module->def("options", &OptionList);
-  module->def("profile", &ProfilesOf);
-  module->def("bootstrap", &BootstrapOf);
-  module->def("horizon_check", &CheckHorizonsOf);
-  module->def("learn_forecasts", &LearnForecastsOf);
+  module->def("profile", [](Model* model, const std::vector<std::string>& names, int num_threads,
+                            const py::object& progress) {
+    Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
+      return AddProfiles(recordings, names, num_threads, JobsOf(progress), fitted);
+    });
+  });
+  module->def("bootstrap", [](Model* model, int replicas, uint64_t seed, int num_threads,
+                              const py::object& progress) {
+    Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
+      const BootstrapOptions options{replicas, seed, num_threads};
+      return AddBootstrap(recordings, options, JobsOf(progress), fitted);
+    });
+  });
+  module->def("horizon_check", [](Model* model, int num_threads, const py::object& progress) {
+    Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
+      AddHorizonCheck(recordings, num_threads, JobsOf(progress), fitted);
+      return MaybeError();
+    });
+  });
+  module->def("learn_forecasts", [](Model* model, int num_threads) {
+    Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
+      return AddForecasts(recordings, num_threads, fitted);
+    });
+  });
   module->def("design", &DesignOf);
   module->def("figures", &Figures);
   // Looks are classes of this style sheet, or declarations of their own.

@@ -28,7 +28,6 @@ Array PathsArray(const std::vector<std::vector<Vector3<double>>>& paths) {
 }
 
 // (frames, people, 8): q, then qd.
-
 Array StatesOf(const RolloutPath<double>& path, int people) {
   return TableArray(path.num_frames(), people, 8, [&](int t, int n) {
     Eigen::Matrix<double, 8, 1> state;
@@ -122,7 +121,7 @@ py::dict PredictOn(const Model& model, const SharedRecording& recording, int obs
                    int samples, uint64_t seed, const std::string& set, double push_scale,
                    const std::vector<int>& push_again, const std::string& forecast) {
   const IdentifiedModel identified = With(model, set);
-  const ForecastUse use = ForecastFrom(forecast);
+  const ForecastUse use = Named<ForecastUse>("forecast", forecast);
   const PendulumRecording seen = PushedAs({push_scale, {push_again.begin(), push_again.end()}},
                                           MakePendulumRecording(*recording), observed, frames);
   if (observed < 0 || frames < 0 || samples < 0) {
@@ -162,7 +161,8 @@ class Online {
         recording_(std::make_unique<PendulumRecording>(MakePendulumRecording(*recording))),
         last_(*recording),
         predictor_(std::make_unique<OnlinePredictor>(
-            Unwrapped(OnlinePredictor::Make(*model_, *recording_, frames, ForecastFrom(forecast)),
+            Unwrapped(OnlinePredictor::Make(*model_, *recording_, frames,
+                                            Named<ForecastUse>("forecast", forecast)),
                       Fault::kUsage))) {
     for (RecordedPerson& person : last_.people) {
       for (auto* track : {&person.hip, &person.left_ankle, &person.right_ankle}) track->resize(1);
@@ -228,37 +228,7 @@ Array Restored(const Restoration& restoration, const Model& model, const SharedR
                   {frames, people, kBodyJoints, 3});
 }
 
-struct FormationAsked {
-  std::string shape;
-  int people, pushed;
-  double spacing, push_direction, duration, fps;
-  std::optional<double> push, push_duration, mass, rod;  // none: as in the fit
-};
-
-Scene SceneOf(const FormationAsked& asked, const std::optional<PushRange>& fitted) {
-  const auto shape = Named<FormationShape>("shape", asked.shape);
-  if (asked.people < 1 || asked.people > 1000 || asked.pushed < 0 || asked.pushed >= asked.people ||
-      !(asked.spacing > 0.0) || !(asked.mass.value_or(1.0) > 0.0) ||
-      !(asked.rod.value_or(1.0) > 0.0) || !(asked.duration > 0.0) ||
-      !(asked.push_duration.value_or(1.0) > 0.0) || !(asked.fps >= 1.0)) {
-    Raise(Fault::kUsage, Error{"a formation has 1 to 1000 people, one of whom is pushed, and "
-                               "spacing, mass, rod, durations and fps above 0"});
-  }
-  Scene scene = FormationScene(FormationPositions(shape, asked.people, asked.spacing),
-                               {asked.mass.value_or(85.0), asked.rod.value_or(kReferenceRod)},
-                               1.0 / asked.fps);
-  if (fitted && !asked.mass && !asked.rod && !fitted->people.empty()) {
-    PlaceFittedPeople(fitted->people, &scene);
-  }
-  const UsualPush usual = fitted ? fitted->usual.value_or(UsualPush{}) : UsualPush{};
-  AddHipPush(asked.pushed,
-             {asked.push.value_or(usual.impulse), 0.0, asked.push_duration.value_or(usual.duration),
-              asked.push_direction * M_PI / 180.0, usual.height, usual.kind},
-             &scene);
-  return scene;
-}
-
-// Adds what the picture of a wave shows, and the table beside it.
+// Adds the values of a wave's picture, and of the table beside it.
 void AddSummaries(const FormationRun& run, const WaveBands& waves, py::dict* dict) {
   py::list onset, displacement, outcome, onset_band;
   for (int n = 0; n < run.num_people(); ++n) {
@@ -289,14 +259,28 @@ void AddSummaries(const FormationRun& run, const WaveBands& waves, py::dict* dic
   (*dict)["fps"] = 1.0 / run.recording.scene.dt;
 }
 
+// push, push_duration, mass, rod: none: as in the fit.
 py::dict OnFormation(const Model& model, const std::string& shape, int people, double spacing,
                      int pushed, std::optional<double> push, std::optional<double> push_duration,
                      double push_direction, std::optional<double> mass, std::optional<double> rod,
                      double duration, double fps, const std::string& set, bool bands) {
   const IdentifiedModel identified = With(model, set);
-  const Scene scene = SceneOf({shape, people, pushed, spacing, push_direction, duration, fps, push,
-                               push_duration, mass, rod},
-                              identified.push_range);
+  const auto formation = Named<FormationShape>("shape", shape);
+  if (people < 1 || people > 1000 || pushed < 0 || pushed >= people || !(spacing > 0.0) ||
+      !(mass.value_or(1.0) > 0.0) || !(rod.value_or(1.0) > 0.0) || !(duration > 0.0) ||
+      !(push_duration.value_or(1.0) > 0.0) || !(fps >= 1.0)) {
+    Raise(Fault::kUsage, Error{"a formation has 1 to 1000 people, one of whom is pushed, and "
+                               "spacing, mass, rod, durations and fps above 0"});
+  }
+  Scene scene = FormationScene(FormationPositions(formation, people, spacing),
+                               {mass.value_or(85.0), rod.value_or(kReferenceRod)}, 1.0 / fps);
+  const std::optional<PushRange>& range = identified.push_range;
+  if (range && !mass && !rod && !range->people.empty()) PlaceFittedPeople(range->people, &scene);
+  const UsualPush usual = range ? range->usual.value_or(UsualPush{}) : UsualPush{};
+  AddHipPush(pushed,
+             {push.value_or(usual.impulse), 0.0, push_duration.value_or(usual.duration),
+              push_direction * M_PI / 180.0, usual.height, usual.kind},
+             &scene);
   const std::shared_ptr<const FittedModel> fitted = model.fitted;
   FormationRun run;
   WaveBands waves;

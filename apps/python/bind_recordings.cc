@@ -178,10 +178,7 @@ py::tuple Simulate(int people, int recordings_per_person, int people_in_row, dou
   options.frames = frames;
   options.seed = seed;
   options.joint_noise_m = joint_noise_m;
-  const auto kind = FromName<PushKind>(push_kind);
-  if (!kind)
-    Raise(Fault::kUsage, Error{"push_kind is '" + push_kind + "'; it must be net or external"});
-  options.push_kind = *kind;
+  options.push_kind = Named<PushKind>("push_kind", push_kind);
   const IdentifiedModel truth = Unwrapped(SyntheticTruth(options, set), Fault::kUsage);
   options.model = truth.options;
   options.parameters = truth.parameters;

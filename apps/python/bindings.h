@@ -124,11 +124,4 @@ std::shared_ptr<const FittedTo> DataOf(const Model& model);
 
 IdentifiedModel IdentifiedOf(const Model& model);
 
-// The forecaster after observed frames, by name; raises on another name.
-inline ForecastUse ForecastFrom(const std::string& name) {
-  ForecastUse use = ForecastUse::kBoth;
-  Check(ParseName("forecast", name, &use), Fault::kUsage);
-  return use;
-}
-
 }  // namespace pushid

@@ -110,11 +110,13 @@ function draw(){const d=devicePixelRatio||1;view.width=view.clientWidth*d;view.h
  $('clock').textContent=(frame*data.dt).toFixed(2)+' s, frame '+frame;$('time').value=frame;}
 )html";
 
+std::string Chip(const std::string& colour) {
+  return "<span class=\"chip\" style=\"background:" + colour + "\"></span>";
+}
+
 std::string Box(const std::string& id, const std::string& text, const std::string& colour = "") {
-  const std::string chip =
-      colour.empty() ? "" : "<span class=\"chip\" style=\"background:" + colour + "\"></span>";
-  return "<label><input type=\"checkbox\" id=\"" + id + "\" checked>" + chip + " " +
-         EscapeXml(text) + "</label>\n";
+  return "<label><input type=\"checkbox\" id=\"" + id + "\" checked>" +
+         (colour.empty() ? "" : Chip(colour)) + " " + EscapeXml(text) + "</label>\n";
 }
 
 std::set<std::string> NamesOf(const Animation& animation) {
@@ -123,15 +125,20 @@ std::set<std::string> NamesOf(const Animation& animation) {
   return names;
 }
 
+template <typename Has>
+bool AnyPerson(const Animation& animation, Has has) {
+  return std::any_of(animation.people.begin(), animation.people.end(), has);
+}
+bool IsRecorded(const AnimatedPerson& person) { return person.recorded; }
+bool HasForce(const AnimatedPerson& person) { return !person.force.empty(); }
+
 // Check boxes of what the animations contain.
 std::string Choices(const std::vector<Animation>& animations) {
   const auto in_one = [&animations](auto has) {
     return std::any_of(animations.begin(), animations.end(), has);
   };
   const auto any = [&in_one](auto has) {
-    return in_one([&has](const Animation& animation) {
-      return std::any_of(animation.people.begin(), animation.people.end(), has);
-    });
+    return in_one([&has](const Animation& animation) { return AnyPerson(animation, has); });
   };
   std::vector<std::string> whats;
   for (const Animation& animation : animations) {
@@ -139,7 +146,7 @@ std::string Choices(const std::vector<Animation>& animations) {
     if (these.size() > whats.size()) whats = these;
   }
   std::string html;
-  if (any([](const AnimatedPerson& p) { return p.recorded; })) {
+  if (any(IsRecorded)) {
     html += Box("recorded", "recorded", "var(--recorded)");
     if (whats.size() == 1) html += Box("predicted", "predicted (in colour)");
   }
@@ -150,9 +157,7 @@ std::string Choices(const std::vector<Animation>& animations) {
   if (any([](const AnimatedPerson& p) { return !p.tip.empty(); })) {
     html += Box("pendulums", "pendulums");
   }
-  if (any([](const AnimatedPerson& p) { return !p.force.empty(); })) {
-    html += Box("forces", "net forces (1 m = 1000 N)", "#e0a100");
-  }
+  if (any(HasForce)) html += Box("forces", "net forces (1 m = 1000 N)", "#e0a100");
   if (any([](const AnimatedPerson& p) { return !p.footprints.empty(); })) {
     html += Box("footprints", "footprints");
   }
@@ -161,8 +166,7 @@ std::string Choices(const std::vector<Animation>& animations) {
     html += Box("above", "from above");
   }
   if (in_one([](const Animation& a) { return !a.pushes.empty(); })) {
-    html += std::string("<span><span class=\"chip\" style=\"background:") + kAnimatedPushColour +
-            "\"></span> pushed, and the push</span>\n";
+    html += "<span>" + Chip(kAnimatedPushColour) + " pushed, and the push</span>\n";
   }
   return html;
 }
@@ -179,10 +183,10 @@ std::string StoryHtml(const Animation& animation) {
   return html + "</div>\n";
 }
 
-// A skeleton's motion where it is all there is of a person.
-const std::vector<Eigen::Matrix3Xd>& JointsAlone(const AnimatedPerson& person) {
-  static const std::vector<Eigen::Matrix3Xd> kNone;
-  return person.body.empty() && person.tip.empty() ? person.joints : kNone;
+// True where a strip of poses draws a person's joints: a body's, or those of people without a
+// pendulum.
+bool ShowsJoints(const AnimatedPerson& person, int t) {
+  return t < static_cast<int>(person.joints.size()) && (person.head >= 0 || person.tip.empty());
 }
 
 int Whole(double value) { return static_cast<int>(std::lround(value)); }
@@ -228,7 +232,6 @@ nlohmann::json PersonJson(const AnimatedPerson& person, const std::vector<std::s
   for (size_t t = 0; t < person.force.size(); t += static_cast<size_t>(every)) {
     force.push_back({Whole(person.force[t][0]), Whole(person.force[t][1])});
   }
-  const bool posed = !person.body.empty();
   nlohmann::json prints = nlohmann::json::array();
   for (const Footprint& p : person.footprints) {
     prints.push_back({Whole(1000 * p.place[0]), Whole(1000 * p.place[1]), p.landing, p.lift_off});
@@ -236,9 +239,9 @@ nlohmann::json PersonJson(const AnimatedPerson& person, const std::vector<std::s
   return {{"name", person.name},
           {"recorded", person.recorded},
           {"what", std::find(whats.begin(), whats.end(), person.what) - whats.begin()},
-          {"body", posed ? Samples(person.body, every) : Samples(person.joints, every)},
-          {"parents", posed ? nlohmann::json(kBodyParents) : nlohmann::json(person.parents)},
-          {"head", posed ? kBodyHead : -1},
+          {"body", Samples(person.joints, every)},
+          {"parents", person.parents},
+          {"head", person.head},
           {"footprints", std::move(prints)},
           {"facing", person.facing},
           {"cart", Samples(person.cart, every)},
@@ -315,30 +318,27 @@ class Panel {
 
   // `what`: which of the what-ifs; several are told apart by their pendulums too.
   void Draw(const AnimatedPerson& person, int what, bool several, int t) {
-    if (t < static_cast<int>(person.body.size())) {
-      const Pose& pose = person.body[t];
-      for (int j = 1; j < kBodyJoints; ++j) {
-        Bone(pose.col(kBodyParents[j]), pose.col(j), BoneLook(person, what, !OnRight(j)));
-      }
-      const Eigen::Vector3d head = pose.col(kBodyHead);
-      svg_->Circle(X(head), Y(head), 0.085 * scale_,
-                   person.recorded ? "fill:#9a9a9a;opacity:0.6" : "fill:" + ColourOfWhat(what));
-    }
-    if (t < static_cast<int>(JointsAlone(person).size())) {
+    if (ShowsJoints(person, t)) {
+      const Eigen::Matrix3Xd& joints = person.joints[t];
       for (size_t j = 0; j < person.parents.size(); ++j) {
         if (person.parents[j] < 0) continue;
-        Bone(person.joints[t].col(person.parents[j]), person.joints[t].col(j),
-             BoneLook(person, what, true));
+        const bool paler = person.head < 0 || !OnRight(static_cast<int>(j));
+        Bone(joints.col(person.parents[j]), joints.col(static_cast<int>(j)),
+             BoneLook(person, what, paler));
+      }
+      if (person.head >= 0) {
+        const Eigen::Vector3d head = joints.col(person.head);
+        svg_->Circle(X(head), Y(head), 0.085 * scale_,
+                     person.recorded ? "fill:#9a9a9a;opacity:0.6" : "fill:" + ColourOfWhat(what));
       }
     }
-    const bool hidden = person.recorded && !person.body.empty();  // the body says it all
+    const bool hidden = person.recorded && person.head >= 0;  // the body says it all
     if (t < static_cast<int>(person.cart.size()) && !hidden) {
-      const std::string own = several ? "stroke:" + ColourOfWhat(what) + ";stroke-width:1.5" : "";
+      const std::string colour = several ? ColourOfWhat(what) : "#d1495b";
       Bone(person.cart[t], person.tip[t],
            person.recorded ? kRecordedLook
-           : several       ? own
+           : several       ? "stroke:" + colour + ";stroke-width:1.5"
                            : kPendulumLook);
-      const std::string colour = several ? ColourOfWhat(what) : "#d1495b";
       svg_->Circle(X(person.tip[t]), Y(person.tip[t]), 3,
                    "fill:" + (person.recorded ? "#9a9a9a" : colour));
     }
@@ -390,7 +390,7 @@ class Panel {
 // A person's hip; none beyond the last frame.
 std::optional<Eigen::Vector3d> HipAt(const AnimatedPerson& person, int t) {
   if (t < static_cast<int>(person.tip.size())) return person.tip[t];
-  if (t < static_cast<int>(person.body.size())) return person.body[t].col(0);
+  if (person.head >= 0 && ShowsJoints(person, t)) return person.joints[t].col(0);
   return std::nullopt;
 }
 
@@ -398,12 +398,10 @@ std::optional<Eigen::Vector3d> HipAt(const AnimatedPerson& person, int t) {
 double MotionTo(const Animation& animation, int t) {
   double sum = 0.0;
   for (const AnimatedPerson& person : animation.people) {
-    if (t < static_cast<int>(person.body.size())) {
-      sum += (person.body[t] - person.body[t - 1]).colwise().norm().mean();
+    if (ShowsJoints(person, t)) {
+      sum += (person.joints[t] - person.joints[t - 1]).colwise().norm().mean();
     } else if (t < static_cast<int>(person.tip.size())) {
       sum += (person.tip[t] - person.tip[t - 1]).norm();
-    } else if (t < static_cast<int>(JointsAlone(person).size())) {
-      sum += (person.joints[t] - person.joints[t - 1]).colwise().norm().mean();
     }
   }
   return sum;
@@ -450,14 +448,10 @@ std::vector<int> FramesWithPush(const Animation& animation, int poses) {
 // The legend of what the strip draws.
 std::vector<LegendEntry> LegendOf(const Animation& animation) {
   std::vector<LegendEntry> legend;
-  const auto any = [&animation](auto has) {
-    return std::any_of(animation.people.begin(), animation.people.end(), has);
-  };
-  if (any([](const AnimatedPerson& p) { return p.recorded; })) {
-    legend.push_back({"recorded", kRecordedLook});
-  }
+  if (AnyPerson(animation, IsRecorded)) legend.push_back({"recorded", kRecordedLook});
   const std::vector<std::string> whats = WhatsOf(animation);
-  const bool bodies = any([](const AnimatedPerson& p) { return !p.recorded && !p.body.empty(); });
+  const bool bodies =
+      AnyPerson(animation, [](const AnimatedPerson& p) { return !p.recorded && p.head >= 0; });
   for (size_t k = 0; k < whats.size(); ++k) {
     const bool alone = whats.size() == 1 && whats[0].empty();
     if (alone && !bodies) continue;  // pendulums have an entry of their own
@@ -467,12 +461,10 @@ std::vector<LegendEntry> LegendOf(const Animation& animation) {
                       "stroke-width:2.5;stroke:" + ColourOfWhat(static_cast<int>(k))});
   }
   if (whats.size() == 1 &&
-      any([](const AnimatedPerson& p) { return !p.recorded && !p.tip.empty(); })) {
+      AnyPerson(animation, [](const AnimatedPerson& p) { return !p.recorded && !p.tip.empty(); })) {
     legend.push_back({"pendulum", kPendulumLook});
   }
-  if (any([](const AnimatedPerson& p) { return !p.force.empty(); })) {
-    legend.push_back({"net force, 1 m = 1000 N", kForceLook});
-  }
+  if (AnyPerson(animation, HasForce)) legend.push_back({"net force, 1 m = 1000 N", kForceLook});
   if (!animation.pushes.empty()) legend.push_back({"pushed person and push", PushLook()});
   return legend;
 }
@@ -482,9 +474,9 @@ std::pair<double, double> ExtentX(const Animation& animation) {
   double low = 1e9, high = -1e9;
   const auto see = [&](double x) { low = std::min(low, x), high = std::max(high, x); };
   for (const AnimatedPerson& person : animation.people) {
-    for (const Pose& pose : person.body) see(pose.row(0).minCoeff()), see(pose.row(0).maxCoeff());
     for (const auto& tip : person.tip) see(tip.x());
-    for (const auto& p : JointsAlone(person)) see(p.row(0).minCoeff()), see(p.row(0).maxCoeff());
+    if (!ShowsJoints(person, 0)) continue;
+    for (const auto& p : person.joints) see(p.row(0).minCoeff()), see(p.row(0).maxCoeff());
   }
   return low > high ? std::make_pair(-1.0, 1.0) : std::make_pair(low - 0.1, high + 0.1);
 }
@@ -503,10 +495,18 @@ std::string AnimationHtml(const std::vector<Animation>& animations, double sampl
                  std::move(data), kScript, first.figures});
 }
 
+void AnimatedPerson::SetBody(const BodyMotion& body) {
+  if (body.empty()) return;
+  joints.assign(body.begin(), body.end());
+  parents.assign(kBodyParents.begin(), kBodyParents.end());
+  head = kBodyHead;
+}
+
 int Animation::num_frames() const {
   size_t frames = 0;
   for (const AnimatedPerson& person : people) {
-    frames = std::max({frames, person.body.size(), person.tip.size(), JointsAlone(person).size()});
+    frames = std::max(frames, person.tip.size());
+    if (ShowsJoints(person, 0)) frames = std::max(frames, person.joints.size());
   }
   return static_cast<int>(frames);
 }
@@ -528,7 +528,7 @@ void AddPrediction(const PendulumRecording& recording, const Prediction& predict
     AnimatedPerson person;
     person.name = recording.subject_ids[n];
     person.what = what;
-    if (n < static_cast<int>(bodies.size())) person.body = bodies[n];
+    if (n < static_cast<int>(bodies.size())) person.SetBody(bodies[n]);
     person.tip = prediction.hip[n];
     if (n < static_cast<int>(prints.size())) person.footprints = prints[n];
     person.facing = recording.facing;
@@ -555,7 +555,7 @@ void AddRecorded(const PendulumRecording& recording, const std::vector<BodyMotio
     person.name = recording.subject_ids[n];
     person.recorded = true;
     person.facing = recording.facing;
-    if (n < bodies.size()) person.body = bodies[n];
+    if (n < bodies.size()) person.SetBody(bodies[n]);
     if (n < prints.size()) person.footprints = prints[n];
     const double cart_height = recording.scene.people[n].body.cart_height;
     for (const PendulumState<double>& state : recording.states[n]) {
@@ -571,7 +571,7 @@ void AddForecast(const std::vector<std::string>& names, const std::vector<BodyMo
   for (size_t n = 0; n < bodies.size(); ++n) {
     AnimatedPerson person;
     person.name = names[n];
-    person.body = bodies[n];
+    person.SetBody(bodies[n]);
     animation->people.push_back(std::move(person));
   }
 }

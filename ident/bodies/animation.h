@@ -16,17 +16,19 @@ namespace pushid {
 struct AnimatedPerson {
   std::string name;
   bool recorded = false;  // else predicted
-  BodyMotion body;        // empty: none
-  // Joints of a file's skeleton that lacks joints of a body, frame by frame, with their parents
-  // (-1: none).
+  // Joints of a body (SetBody), or of a file's skeleton that lacks some of a body, frame by frame,
+  // with their parents (-1: none); empty: none. head: of a body; -1: none.
   std::vector<Eigen::Matrix3Xd> joints;
   std::vector<int> parents;
+  int head = -1;
   std::vector<Vector3<double>> cart;  // empty: none
   std::vector<Vector3<double>> tip;
   std::vector<Vector4<double>> force;  // net, generalized: N and N m; empty: none
   std::vector<Footprint> footprints;   // empty: unknown
   double facing = 0.0;                 // of the feet, rad from x
   std::string what;                    // of a what-if: "mu=10"; empty: the model as it was fitted
+
+  void SetBody(const BodyMotion& body);
 };
 
 // A push as it is drawn: whom it meets, and its force (x, y: N) from a frame on.

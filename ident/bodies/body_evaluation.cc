@@ -118,14 +118,6 @@ std::optional<GroupMetrics> GroupsOf(const std::vector<BodyRecording>& recording
 
 }  // namespace
 
-BodyScore FailedBodies(const BodyRecording& recording, const std::string& failure) {
-  BodyScore score;
-  score.id = recording.pendulum.id;
-  score.frames = recording.num_frames();
-  score.failure = failure;
-  return score;
-}
-
 std::vector<BodyMotion> RestoreBodies(const Restoration& restoration,
                                       const PostprocessOptions& options,
                                       const std::vector<RestorationInput>& people) {
@@ -175,11 +167,13 @@ void ScoreRestoration(const IdentifiedModel& model, const Restoration& restorati
   add("recorded", recording.bodies);
   const Result<Prediction> predicted = PredictFrom(model, recording.pendulum, observed, 0, use);
   if (!predicted.ok() || !predicted.value().status.ok) {
-    const std::string failure =
+    BodyScore failed;
+    failed.id = recording.pendulum.id;
+    failed.frames = recording.num_frames();
+    failed.failure =
         predicted.ok() ? OutsideText(predicted.value().status) : predicted.error().message;
-    std::vector<const char*> names = {"restoration", "rigid"};
-    if (observed > 0) names.push_back("restoration_all_frames");
-    for (const char* name : names) (*scores)[name].push_back(FailedBodies(recording, failure));
+    for (const char* name : {"restoration", "rigid"}) (*scores)[name].push_back(failed);
+    if (observed > 0) (*scores)["restoration_all_frames"].push_back(failed);
     return;
   }
   const Prediction& prediction = predicted.value();
@@ -192,6 +186,18 @@ void ScoreRestoration(const IdentifiedModel& model, const Restoration& restorati
   add("rigid", RigidRestoration().Restore(people));
 }
 
+void ScoreForecast(const BodyRecording& recording, const std::vector<BodyMotion>& forecast,
+                   int observed, BodyScores* scores) {
+  const auto add = [&](const char* name, const std::vector<BodyMotion>& bodies, int first_frame) {
+    (*scores)[name].push_back(ScoreBodies(recording, bodies, first_frame));
+  };
+  const int seen = observed > 1 ? observed : 0;  // one is the first pose, which everybody knows
+  add("generator", forecast, observed);
+  if (observed > 1) add("generator_all_frames", forecast, 1);
+  add("static", StaticBodies(recording, seen), observed);
+  add("constant_velocity", ConstantVelocityBodies(recording, seen), observed);
+}
+
 BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings, const BodyScores& scores,
                             const LabelKeys& group_by) {
   BodyEvaluation evaluation;
@@ -199,15 +205,6 @@ BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings, const 
     evaluation[name] = SummarizeBodies(recordings, of_name, group_by);
   }
   return evaluation;
-}
-
-BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings,
-                            const std::vector<std::map<std::string, BodyScore>>& by_recording) {
-  BodyScores all;
-  for (const auto& scores : by_recording) {
-    for (const auto& [name, score] : scores) all[name].push_back(score);
-  }
-  return SummarizeAll(recordings, all);
 }
 
 Json ToJson(const BodySummary& summary, bool with_recordings) {

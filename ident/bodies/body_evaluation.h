@@ -88,14 +88,8 @@ std::vector<BodyMotion> RestoreBodies(const Restoration& restoration,
                                       const PostprocessOptions& options,
                                       const std::vector<RestorationInput>& people);
 
-// Their `observed` beside a predictor that is shown so many frames: one is the first pose, which
-// everybody knows.
-inline int SeenByBaselines(int shown) { return shown > 1 ? shown : 0; }
 std::vector<BodyMotion> StaticBodies(const BodyRecording& recording, int observed = 0);
 std::vector<BodyMotion> ConstantVelocityBodies(const BodyRecording& recording, int observed = 0);
-
-// The score of a recording whose bodies could not be predicted.
-BodyScore FailedBodies(const BodyRecording& recording, const std::string& failure);
 
 // Scores by the names above, in the order of the calls.
 using BodyScores = std::map<std::string, std::vector<BodyScore>>;
@@ -103,13 +97,14 @@ void ScoreRestoration(const IdentifiedModel& model, const Restoration& restorati
                       const PostprocessOptions& options, const BodyRecording& recording,
                       BodyScores* scores, int observed = 0, ForecastUse use = ForecastUse::kBoth);
 
+// A generator's forecast after `observed` frames, at least 1, and the baselines beside it:
+// generator, generator_all_frames, static and constant_velocity.
+void ScoreForecast(const BodyRecording& recording, const std::vector<BodyMotion>& forecast,
+                   int observed, BodyScores* scores);
+
 using BodyEvaluation = std::map<std::string, BodySummary>;
 BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings, const BodyScores& scores,
                             const LabelKeys& group_by = UsualGroups());
-// The scores of each recording, by name.
-BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings,
-                            const std::vector<std::map<std::string, BodyScore>>& by_recording);
-
 // Scores of bodies as JSON and as tables.
 
 // Adds the body's keys (MPJPE_m, MBLE_m, ...) to an evaluation's JSON (model_json.h): to the
@@ -122,7 +117,7 @@ nlohmann::ordered_json ToJson(const BodySummary& summary, bool with_recordings);
 
 // A row per predictor, a column per metric.
 TextTable BodyTable(const BodyEvaluation& evaluation);
-// That, then the restoration by label.
+// The table, then the restoration by label.
 std::string BodyText(const BodyEvaluation& evaluation);
 // Errors up to fixed times (kTimedErrors), a row per predictor.
 std::string TimedErrorsText(const BodyEvaluation& evaluation);

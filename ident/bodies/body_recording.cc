@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <numeric>
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/names.h"
@@ -33,19 +35,17 @@ std::vector<std::string> RoleJointNames(const RecordedPerson& person) {
   return names;
 }
 
-std::vector<RestorationInput> People(const BodyRecording& recording) {
+// People in their first poses, and those that were seen; one pose is the first, which everybody
+// has.
+std::vector<RestorationInput> People(const BodyRecording& recording, int observed) {
   std::vector<Pose> first_poses;
   for (const BodyMotion& body : recording.bodies) first_poses.push_back(body.front());
-  return PeopleOf(recording.pendulum.scene, first_poses);
-}
-
-// One pose is the first one, which everybody has.
-void AddSeen(const BodyRecording& recording, int observed, std::vector<RestorationInput>* people) {
-  if (observed < 2) return;
-  for (int n = 0; n < recording.num_people(); ++n) {
+  auto people = PeopleOf(recording.pendulum.scene, first_poses);
+  for (size_t n = 0; observed > 1 && n < people.size(); ++n) {
     const BodyMotion& body = recording.bodies[n];
-    (*people)[n].seen.assign(body.begin(), body.begin() + std::min<size_t>(observed, body.size()));
+    people[n].seen.assign(body.begin(), body.begin() + std::min<size_t>(observed, body.size()));
   }
+  return people;
 }
 
 std::vector<FootPath> FeetOf(const RolloutPath<double>& path, int person) {
@@ -150,16 +150,14 @@ void FollowPrediction(const Prediction& prediction, std::vector<RestorationInput
 
 std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,
                                               const Prediction& prediction) {
-  std::vector<RestorationInput> people = People(recording);
+  std::vector<RestorationInput> people = People(recording, prediction.observed);
   FollowPrediction(prediction, &people);
-  AddSeen(recording, prediction.observed, &people);
   return people;
 }
 
 std::vector<RestorationInput> RecordedPeople(const BodyRecording& recording, bool rod_moves,
                                              int observed) {
-  std::vector<RestorationInput> people = People(recording);
-  AddSeen(recording, observed, &people);
+  std::vector<RestorationInput> people = People(recording, observed);
   const PendulumRecording& pendulum = recording.pendulum;
   for (int n = 0; n < recording.num_people(); ++n) {
     for (int t = 0; t < recording.num_frames(); ++t) {
@@ -182,9 +180,9 @@ std::vector<std::string> DefaultJointNames() {
           "LeftAnkle",    "LeftToe"};
 }
 
-BodySkeleton RoleSkeleton(const Pose& first, const std::vector<std::string>& names) {
+BodySkeleton RoleSkeleton(const Pose& first) {
   BodySkeleton skeleton;
-  skeleton.names = names;
+  skeleton.names = DefaultJointNames();
   skeleton.parents.assign(kBodyParents.begin(), kBodyParents.end());
   for (int role = 0; role < kBodyJoints; ++role) skeleton.roles.push_back(role);
   skeleton.rest = first;
@@ -197,7 +195,7 @@ BodySkeleton RoleSkeleton(const Pose& first, const std::vector<std::string>& nam
 
 BodySkeleton SkeletonOf(const RecordedPerson& person) {
   if (!person.skeleton) {
-    return RoleSkeleton(PoseOf(person.roles, person.joints.front()), DefaultJointNames());
+    return RoleSkeleton(PoseOf(person.roles, person.joints.front()));
   }
   const FileSkeleton& file = *person.skeleton;
   BodySkeleton skeleton;
@@ -211,7 +209,7 @@ BodySkeleton SkeletonOf(const RecordedPerson& person) {
   }
   // Positions are the file's, not the filtered ones: their bones are what is kept.
   std::vector<int> all(joints);
-  for (int j = 0; j < joints; ++j) all[j] = j;
+  std::iota(all.begin(), all.end(), 0);
   std::vector<Eigen::Vector3d> rest(joints);
   BvhKinematics(file.bvh, file.metres_per_unit, all).Positions(file.values.data(), rest.data());
   skeleton.rest.resize(3, joints);
@@ -228,7 +226,7 @@ BodySkeleton SkeletonOf(const RecordedPerson& person) {
   return skeleton;
 }
 
-PosedJoints Retarget(const BodySkeleton& skeleton, const Pose& pose) {
+FittedTree Retarget(const BodySkeleton& skeleton, const Pose& pose) {
   // A root that is not the hip is carried along with it.
   const Eigen::Vector3d move = pose.col(kBodyHip) - skeleton.hip;
   Eigen::Matrix3Xd wanted = skeleton.rest.colwise() + move;
@@ -237,17 +235,15 @@ PosedJoints Retarget(const BodySkeleton& skeleton, const Pose& pose) {
   }
   const FittedTree fitted = FitTree(skeleton.tree, skeleton.rest, wanted);
   const int joints = skeleton.num_joints();
-  PosedJoints posed{Eigen::Matrix3Xd(3, joints),
-                    {fitted.rotations.begin(), fitted.rotations.begin() + joints}};
+  FittedTree posed{Eigen::Matrix3Xd(3, joints),
+                   {fitted.rotations.begin(), fitted.rotations.begin() + joints}};
   for (int j = 0; j < joints; ++j) {
     const int parent = skeleton.parents[j];
-    if (skeleton.roles[j] >= 0 || parent < 0) {
-      posed.positions.col(j) = wanted.col(j);
-    } else {
-      posed.positions.col(j) =
-          posed.positions.col(parent) +
-          posed.rotations[parent] * (skeleton.rest.col(j) - skeleton.rest.col(parent));
-    }
+    posed.positions.col(j) = wanted.col(j);
+    if (skeleton.roles[j] >= 0 || parent < 0) continue;
+    posed.positions.col(j) =
+        posed.positions.col(parent) +
+        posed.rotations[parent] * (skeleton.rest.col(j) - skeleton.rest.col(parent));
   }
   return posed;
 }
@@ -315,7 +311,7 @@ class HierarchyMotion {
     BvhMotion bvh;
     bvh.frame_time_s = dt;
     for (const Pose& pose : motion) {
-      const PosedJoints posed = Retarget(skeleton_, pose);
+      const FittedTree posed = Retarget(skeleton_, pose);
       for (int j = 0; j < skeleton_.num_joints(); ++j) Append(posed, j, &bvh.values);
     }
     bvh.skeleton = std::move(file_.bvh);
@@ -323,7 +319,7 @@ class HierarchyMotion {
   }
 
  private:
-  void Append(const PosedJoints& posed, int j, std::vector<double>* row) {
+  void Append(const FittedTree& posed, int j, std::vector<double>* row) {
     const BvhJoint& joint = file_.bvh.joints[j];
     std::vector<double> values = values_[j];
     if (joint.parent < 0) {
@@ -357,30 +353,23 @@ class HierarchyMotion {
 };
 
 // "out/motion.bvh" and 2, "X-16": "out/motion_2_X-16.bvh".
-std::string PersonsFile(const std::string& path, int person, const std::string& subject) {
-  const size_t slash = path.find_last_of('/');
-  size_t dot = path.find_last_of('.');
-  if (dot == std::string::npos || (slash != std::string::npos && dot < slash)) dot = path.size();
-  std::string name = subject;
-  for (char& c : name) c = c == '/' ? '_' : c;
-  return path.substr(0, dot) + "_" + std::to_string(person) + "_" + name + path.substr(dot);
+std::string PersonsFile(const std::string& file, int person, std::string subject) {
+  std::replace(subject.begin(), subject.end(), '/', '_');
+  const std::filesystem::path path(file);
+  const std::string name = path.stem().string() + "_" + std::to_string(person) + "_" + subject;
+  return (path.parent_path() / (name + path.extension().string())).string();
 }
 
 }  // namespace
 
 BodySkeleton BodyScene::skeleton(int person) const {
-  return skeletons.empty() ? RoleSkeleton(bodies[person].front(), DefaultJointNames())
-                           : skeletons[person];
+  return skeletons.empty() ? RoleSkeleton(bodies[person].front()) : skeletons[person];
 }
 
 BodyScene SceneOf(const BodyRecording& recording, std::vector<BodyMotion> bodies) {
-  BodyScene scene;
-  scene.id = recording.pendulum.id;
-  scene.dt = recording.pendulum.scene.dt;
-  scene.subject_ids = recording.pendulum.subject_ids;
-  scene.skeletons = recording.skeletons;
-  scene.bodies = std::move(bodies);
-  return scene;
+  const PendulumRecording& pendulum = recording.pendulum;
+  return {pendulum.id, pendulum.scene.dt, pendulum.subject_ids, recording.skeletons,
+          std::move(bodies)};
 }
 
 BvhMotion ToBvh(const BodySkeleton& skeleton, const BodyMotion& motion, double dt) {
@@ -388,9 +377,7 @@ BvhMotion ToBvh(const BodySkeleton& skeleton, const BodyMotion& motion, double d
 }
 
 bool IsBodyFile(const std::string& path) {
-  constexpr size_t kEnding = 4;
-  return path.size() > kEnding &&
-         EqualsIgnoringCase(std::string_view(path).substr(path.size() - kEnding), ".bvh");
+  return EqualsIgnoringCase(std::filesystem::path(path).extension().string(), ".bvh");
 }
 
 Result<std::vector<std::string>> WriteBodyBvh(const std::string& path, const BodyScene& scene) {
@@ -412,7 +399,7 @@ MaybeError WriteJointsCsv(const std::string& path, const BodyScene& scene) {
   char numbers[128];
   for (int t = 0; t < scene.num_frames(); ++t) {
     for (int n = 0; n < scene.num_people(); ++n) {
-      const PosedJoints posed = Retarget(skeletons[n], scene.bodies[n][t]);
+      const FittedTree posed = Retarget(skeletons[n], scene.bodies[n][t]);
       for (int j = 0; j < skeletons[n].num_joints(); ++j) {
         const auto p = posed.positions.col(j);
         std::snprintf(numbers, sizeof numbers, "%d,%.9g,%d,", t, t * scene.dt, n);

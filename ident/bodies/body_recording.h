@@ -41,19 +41,15 @@ struct BodySkeleton {
 std::vector<std::string> DefaultJointNames();
 
 // The 22 roles themselves, as they stand in a pose.
-BodySkeleton RoleSkeleton(const Pose& first, const std::vector<std::string>& names);
+BodySkeleton RoleSkeleton(const Pose& first);
 
 // The skeleton of a person read with all joints: the hierarchy of a BVH file; of points, the 22
 // roles.
 BodySkeleton SkeletonOf(const RecordedPerson& person);
 
-struct PosedJoints {
-  // m, world, a column a joint: those with a role where the body has it, the others by their
-  // parent's rotation.
-  Eigen::Matrix3Xd positions;
-  std::vector<Eigen::Matrix3d> rotations;  // world, against the rest
-};
-PosedJoints Retarget(const BodySkeleton& skeleton, const Pose& pose);
+// A body's pose by the joints: positions of those with a role where the body has it, of the others
+// by their parent's rotation.
+FittedTree Retarget(const BodySkeleton& skeleton, const Pose& pose);
 
 struct BodyRecording {
   PendulumRecording pendulum;

@@ -1,6 +1,7 @@
 // ident: restorations written and read.
 #include "ident/bodies/restoration_files.h"
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <functional>
@@ -11,6 +12,7 @@
 #include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/random.h"
+#include "ident/parameters/json_archive.h"
 #include "models/restoration/window_restoration.h"
 
 namespace pushid {
@@ -84,14 +86,9 @@ std::function<NormalSource()> NormalsOf(uint64_t seed) {
   };
 }
 
-constexpr TensorFolderKind kRestorationFolder = {
-    "restoration", "--restoration", "pushid-train-restoration --out", kRestorationFormat};
-
-Result<RestorationView> ViewOf(const RestorationFile& file, const std::string& path) {
-  RestorationView view = RestorationView::kPendulum;
-  const std::string name = file.settings->value(kViewKey, NameOf(view));
-  if (MaybeError error = ParseName(kViewKey, name, &view)) return Error{error->message, path};
-  return view;
+RestorationView ViewOf(const Json& settings) {
+  if (!settings.contains(kViewKey)) return RestorationView::kPendulum;
+  return EnumFrom<RestorationView>(settings, kViewKey);
 }
 
 }  // namespace
@@ -125,9 +122,7 @@ MaybeError WriteTensorFolder(const TensorFolderKind& kind, const std::string& fo
   return WriteJson(JsonFileOf(kind, folder), json);
 }
 
-Result<TensorFolder> ReadTensorFolder(const TensorFolderKind& kind, const std::string& folder,
-                                      const std::string& kinds,
-                                      bool (*is_kind)(const std::string& name)) {
+Result<TensorFolder> ReadTensorFolder(const TensorFolderKind& kind, const std::string& folder) {
   const std::string path = JsonFileOf(kind, folder);
   const Result<JsonDocument> read = ReadJsonDocument(path);
   if (!read.ok()) {
@@ -143,9 +138,10 @@ Result<TensorFolder> ReadTensorFolder(const TensorFolderKind& kind, const std::s
   JsonFields fields(document, document.content, "", kind.what);
   const int format = fields.Whole("format", "the format's number", 1, 1 << 20);
   TensorFolder content;
-  content.kind = fields.Text("kind", kinds);
-  if (fields.Has("kind") && !is_kind(content.kind)) {
-    fields.Fail("kind", "is " + Quoted(content.kind) + "; it must be " + kinds);
+  const std::vector<std::string> names = kind.kinds();
+  content.kind = fields.Text("kind", Listed(names, "or"));
+  if (fields.Has("kind") && std::count(names.begin(), names.end(), content.kind) == 0) {
+    fields.Fail("kind", "is " + Quoted(content.kind) + "; it must be " + Listed(names, "or"));
   }
   const std::string hash = fields.OptionalText("weights_hash", "");
   fields.Require("weights_hash", "the weights file's hash");
@@ -209,47 +205,25 @@ Result<std::vector<float>> ReadNpy(const std::string& path) {
   return values;
 }
 
-MaybeError WriteRestorationFile(const std::string& folder, const RestorationFile& file) {
-  return WriteTensorFolder(kRestorationFolder, folder,
-                           {NameOf(file.kind), file.settings, file.training, file.tensors});
+std::vector<std::string> TrainedKinds() {
+  return AllNames<RestorationKind>([](const RestorationKindRow& row) { return row.trained; });
 }
 
-Result<RestorationFile> ReadRestorationFile(const std::string& folder) {
-  Result<TensorFolder> read = ReadTensorFolder(
-      kRestorationFolder, folder, TrainedRestorationKinds(),
-      [](const std::string& name) { return FromName<RestorationKind>(name).has_value(); });
-  if (!read.ok()) return read.error();
-  TensorFolder& content = read.value();
-  return RestorationFile{*FromName<RestorationKind>(content.kind), std::move(content.settings),
-                         std::move(content.training), std::move(content.tensors)};
-}
-
-Result<std::unique_ptr<Restoration>> MakeWindow(const RestorationFile& file,
-                                                const std::string& path, TensorReader* reader) {
-  const Result<RestorationView> view = ViewOf(file, path);
-  if (!view.ok()) return view.error();
-  const int inputs = WindowInputRows(view.value());
+std::unique_ptr<Restoration> MakeWindow(const Json& settings, TensorFields* reader) {
   WindowWeights weights;
-  weights.view = view.value();
-  TensorFields fields(reader);
-  fields.Scales("inputs", inputs, &weights.inputs);
-  fields.Network("network", 3, inputs, WindowOutputRows(view.value()), &weights.network);
-  return std::unique_ptr<Restoration>(new WindowRestoration(std::move(weights)));
+  weights.view = ViewOf(settings);
+  return std::make_unique<WindowRestoration>(TakeTensors("", std::move(weights), reader));
 }
 
-Result<std::unique_ptr<Restoration>> MakeCvae(const RestorationFile& file, const std::string& path,
-                                              TensorReader* reader) {
-  const std::string name = file.settings->value(kCvaeCoordinatesKey, NameOf(CvaeCoordinates::kTip));
-  CvaeCoordinates coordinates;
-  if (MaybeError error = ParseName(kCvaeCoordinatesKey, name, &coordinates)) {
-    return Error{error->message, path};
+std::unique_ptr<Restoration> MakeCvae(const Json& settings, TensorFields* reader) {
+  CvaeWeights weights;
+  if (settings.contains(kCvaeCoordinatesKey)) {
+    weights.layout.coordinates = EnumFrom<CvaeCoordinates>(settings, kCvaeCoordinatesKey);
   }
-  const Result<RestorationView> view = ViewOf(file, path);
-  if (!view.ok()) return view.error();
-  const CvaeLayout layout = {coordinates, view.value() == RestorationView::kPendulum,
-                             file.settings->value(kCvaeHalvesKey, true)};
-  return std::unique_ptr<Restoration>(
-      new CvaeRestoration(TakeCvae(layout, reader), NormalsOf(kDrawsSeed)));
+  weights.layout.pendulum = ViewOf(settings) == RestorationView::kPendulum;
+  weights.layout.halves = settings.value(kCvaeHalvesKey, true);
+  return std::make_unique<CvaeRestoration>(TakeTensors("", std::move(weights), reader),
+                                           NormalsOf(kDrawsSeed));
 }
 
 MaybeError ChooseLatent(const LatentChoice& choice, Restoration* restoration) {
@@ -264,41 +238,34 @@ MaybeError ChooseLatent(const LatentChoice& choice, Restoration* restoration) {
   return std::nullopt;
 }
 
-std::string RestorationJsonFile(const std::string& folder) {
-  return JsonFileOf(kRestorationFolder, folder);
-}
-
-Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file,
+Result<std::unique_ptr<Restoration>> MakeRestoration(const TensorFolder& content,
                                                      const std::string& folder) {
-  const std::string path = RestorationJsonFile(folder);
-  for (const KindMaker& maker : kRestorationMakers) {
-    if (maker.kind != file.kind) continue;
-    TensorReader reader(file.tensors);
-    Result<std::unique_ptr<Restoration>> made = maker.make(file, path, &reader);
-    if (made.ok() && !reader.problem().empty()) {
-      return Error{reader.problem() + "; train again with this version", path};
-    }
-    return made;
+  const std::string path = JsonFileOf(kRestorationFolder, folder);
+  const auto kind = FromName<RestorationKind>(content.kind);
+  if (!kind || !RowOf(*kind).trained) {
+    return Error{
+        "the kind is " + Quoted(content.kind) + "; it must be " + Listed(TrainedKinds(), "or"),
+        path};
   }
-  return Error{
-      "the kind is " + Quoted(NameOf(file.kind)) + "; it must be " + TrainedRestorationKinds(),
-      path};
+  return FromTensors(content, path, "", [&](TensorFields* reader) {
+    return kRestorationMakers[static_cast<size_t>(*kind)](*content.settings, reader);
+  });
 }
 
 Result<bool> LearnedAlone(const std::string& folder) {
   if (folder == NameOf(RestorationKind::kRigid)) return false;
-  const Result<RestorationFile> file = ReadRestorationFile(folder);
-  if (!file.ok()) return file.error();
-  return file.value().training->value(kMostPeopleKey, 0) == 1;
+  const Result<TensorFolder> read = ReadTensorFolder(kRestorationFolder, folder);
+  if (!read.ok()) return read.error();
+  return read.value().training->value(kMostPeopleKey, 0) == 1;
 }
 
 Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder) {
   if (folder == NameOf(RestorationKind::kRigid)) {
     return std::unique_ptr<Restoration>(new RigidRestoration());
   }
-  const Result<RestorationFile> file = ReadRestorationFile(folder);
-  if (!file.ok()) return file.error();
-  return MakeRestoration(file.value(), folder);
+  const Result<TensorFolder> read = ReadTensorFolder(kRestorationFolder, folder);
+  if (!read.ok()) return read.error();
+  return MakeRestoration(read.value(), folder);
 }
 
 }  // namespace pushid

@@ -2,10 +2,13 @@
 // weights.npy (its numbers, float32). Both load without the training code and without LibTorch.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
+#include <exception>
+#include <iterator>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "datasets/files/error.h"
@@ -29,17 +32,17 @@ namespace pushid {
 // The tensors stand in weights.npy one after the other, each column by column. Restorations and
 // generators are such folders.
 
-// What the folder holds, for messages and as a file name.
 struct TensorFolderKind {
-  const char* what;    // "restoration"; the JSON file has this name
+  const char* what;    // "restoration", for messages; the JSON file has this name
   const char* flag;    // "--restoration", which names the folder
   const char* writer;  // "pushid-train-restoration --out", which wrote it
   int format;          // the newest that is read
+  std::vector<std::string> (*kinds)();
 };
 
 struct TensorFolder {
   std::string kind;
-  KeptJson settings{};
+  KeptJson settings{};  // of the kind
   KeptJson training{};  // provenance
   TensorList tensors;
 };
@@ -50,11 +53,25 @@ std::string JsonFileOf(const TensorFolderKind& kind, const std::string& folder);
 MaybeError WriteTensorFolder(const TensorFolderKind& kind, const std::string& folder,
                              const TensorFolder& content);
 
-// kinds: the names there are, for messages; is_kind: whether a name is one of them. Errors: no such
-// folder, another kind, a newer format, weights that are not those of the JSON (by their hash).
-Result<TensorFolder> ReadTensorFolder(const TensorFolderKind& kind, const std::string& folder,
-                                      const std::string& kinds,
-                                      bool (*is_kind)(const std::string& name));
+// Errors: no such folder, another kind, a newer format, weights that are not those of the JSON (by
+// their hash).
+Result<TensorFolder> ReadTensorFolder(const TensorFolderKind& kind, const std::string& folder);
+
+// make(reader) of the folder's tensors; path: of its JSON. Errors: exceptions of make, whose text
+// is `setting` and theirs; missing or misshapen tensors by name.
+template <typename Make>
+auto FromTensors(const TensorFolder& content, const std::string& path, const char* setting,
+                 Make make) -> Result<decltype(make(std::declval<TensorFields*>()))> {
+  TensorFields reader(content.tensors);
+  constexpr char kAgain[] = "; train again with this version";
+  try {
+    auto made = make(&reader);
+    if (!reader.problem().empty()) return Error{reader.problem() + kAgain, path};
+    return Result<decltype(made)>(std::move(made));
+  } catch (const std::exception& problem) {
+    return Error{std::string(setting) + problem.what() + kAgain, path};
+  }
+}
 
 // Numbers in NumPy's .npy format (version 1.0, little-endian float32, one dimension), so that any
 // language can read weights: numpy.load("weights.npy"). Writes atomically.
@@ -63,8 +80,7 @@ MaybeError WriteNpy(const std::string& path, const std::vector<float>& values);
 // Errors: no .npy file, another type, order or number of dimensions, cut off.
 Result<std::vector<float>> ReadNpy(const std::string& path);
 
-inline constexpr int kRestorationFormat = 1;
-// In RestorationFile::settings: a name of RestorationView (of kWindow and kCvae), of
+// In the settings of a restoration: a name of RestorationView (of kWindow and kCvae), of
 // CvaeCoordinates, whether the body has two networks, and a name of CvaeTraining (of kCvae). Files
 // of before have none of them.
 inline constexpr char kViewKey[] = "sees";
@@ -72,37 +88,26 @@ inline constexpr char kCvaeCoordinatesKey[] = "coordinates";
 inline constexpr char kCvaeHalvesKey[] = "halves";
 inline constexpr char kCvaeTrainingKey[] = "training";
 
-// In RestorationFile::training: the most people of one recording that it learned from.
+// In its training: the most people of one recording that it learned from.
 inline constexpr char kMostPeopleKey[] = "most_people";
 
-struct RestorationFile {
-  RestorationKind kind = RestorationKind::kWindow;
-  KeptJson settings{};  // of the kind
-  KeptJson training{};  // provenance
-  TensorList tensors;
-};
+std::vector<std::string> TrainedKinds();  // names of the restorations that have a folder
+inline constexpr TensorFolderKind kRestorationFolder = {
+    "restoration", "--restoration", "pushid-train-restoration --out", 1, TrainedKinds};
 
-std::string RestorationJsonFile(const std::string& folder);
-
-// The JSON comes last: without it the folder is no restoration.
-MaybeError WriteRestorationFile(const std::string& folder, const RestorationFile& file);
-
-// Errors: no such folder, a newer format, weights that are not those of the JSON (by their hash).
-Result<RestorationFile> ReadRestorationFile(const std::string& folder);
-
-// The restoration a file describes. Errors: a kind that is no restoration, missing or misshapen
-// tensors by name.
-Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file,
+// The restoration of a folder's content; folder: for messages. Errors: a kind that is no
+// restoration, missing or misshapen tensors by name.
+Result<std::unique_ptr<Restoration>> MakeRestoration(const TensorFolder& content,
                                                      const std::string& folder);
 
-// Whether it learned from people alone; such bodies stay on tiptoe when others push them on. false
+// True where it learned from people alone, whose bodies stay on tiptoe when others push them; false
 // where the file does not say.
 Result<bool> LearnedAlone(const std::string& folder);
 
-// Both. "rigid" needs no folder: the name is enough.
+// The restoration in a folder; "rigid" needs none: the name is enough.
 Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder);
 
-// How z of a `cvae` is chosen (models/restoration/cvae_restoration.h).
+// The choice of z of a `cvae` (models/restoration/cvae_restoration.h).
 struct LatentChoice {
   CvaeLatent latent = CvaeLatent::kMean;
   uint64_t seed = 1;  // of kDraw
@@ -110,62 +115,37 @@ struct LatentChoice {
 // Errors: kDraw of another kind, or without samplers.
 MaybeError ChooseLatent(const LatentChoice& choice, Restoration* restoration);
 
-// What makes and trains each kind of restoration, one row each; RestorationKindRow has what
-// else there is to a kind. A new kind adds a maker and a trainer here, and defines both in files of
-// its own.
+// The functions that make and train each kind of restoration, one row each in the order of
+// RestorationKindRow, which has what else there is to a kind. A new kind adds a maker and a trainer
+// here, and defines both in files of its own.
 //
 // The tables are two, because nothing but the programs that train needs LibTorch: a program links
 // everything in the tables it reads.
+
+// Throws where a setting is of none of its names.
+using RestorationMaker = std::unique_ptr<Restoration>(const nlohmann::ordered_json& settings,
+                                                      TensorFields* reader);
+RestorationMaker MakeWindow, MakeCvae;
+inline constexpr RestorationMaker* kRestorationMakers[] = {nullptr, MakeWindow, MakeCvae};
 
 struct RestorationSample;           // ident/training/restoration_training.h
 struct RestorationTrainingOptions;  // ident/training/restoration_training.h
 struct RestorationTraining;         // ident/training/restoration_training.h
 
-// What the tensors of a file become; path: of the file, for messages.
-struct KindMaker {
-  RestorationKind kind;
-  Result<std::unique_ptr<Restoration>> (*make)(const RestorationFile& file, const std::string& path,
-                                               TensorReader* reader);
-};
-
-Result<std::unique_ptr<Restoration>> MakeWindow(const RestorationFile& file,
-                                                const std::string& path, TensorReader* reader);
-Result<std::unique_ptr<Restoration>> MakeCvae(const RestorationFile& file, const std::string& path,
-                                              TensorReader* reader);
-inline constexpr KindMaker kRestorationMakers[] = {
-    {RestorationKind::kWindow, MakeWindow},
-    {RestorationKind::kCvae, MakeCvae},
-};
-
-// training, held: samples to learn from and to stop early by. Errors: nothing to learn from.
-using RestorationTrainer = Result<RestorationTraining>(
-    const std::vector<RestorationSample>& training, const std::vector<RestorationSample>& held,
-    const RestorationTrainingOptions& options);
-struct KindTrainer {
-  RestorationKind kind;
-  RestorationTrainer* train;
-};
+// training, held: samples to learn from and to stop early by.
+using RestorationTrainer = RestorationTraining(const std::vector<RestorationSample>& training,
+                                               const std::vector<RestorationSample>& held,
+                                               const RestorationTrainingOptions& options);
 RestorationTrainer TrainWindow, TrainCvae;
-inline constexpr KindTrainer kRestorationTrainers[] = {
-    {RestorationKind::kWindow, TrainWindow},
-    {RestorationKind::kCvae, TrainCvae},
-};
+inline constexpr RestorationTrainer* kRestorationTrainers[] = {nullptr, TrainWindow, TrainCvae};
 
-template <typename Row, size_t kCount>
-constexpr bool HasRow(const Row (&rows)[kCount], RestorationKind kind) {
-  for (const Row& row : rows) {
-    if (row.kind == kind) return true;
-  }
-  return false;
-}
 constexpr bool EveryTrainedKindIsMadeAndTrained() {
   for (const RestorationKindRow& row : kRestorationKinds) {
-    if (HasRow(kRestorationTrainers, row.value) != row.trained ||
-        HasRow(kRestorationMakers, row.value) != row.trained) {
-      return false;
-    }
+    const auto kind = static_cast<std::size_t>(row.value);
+    if ((kRestorationMakers[kind] != nullptr) != row.trained) return false;
+    if ((kRestorationTrainers[kind] != nullptr) != row.trained) return false;
   }
-  return true;
+  return std::size(kRestorationMakers) == std::size(kRestorationKinds);
 }
 static_assert(EveryTrainedKindIsMadeAndTrained(), "a kind has no maker or no trainer");
 

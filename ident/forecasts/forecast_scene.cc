@@ -8,13 +8,11 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/formats/units.h"
-#include "ident/bodies/animation.h"
 
 namespace pushid {
 namespace {
 
-constexpr size_t kMostFutures = 20;   // more of them hide one another
-constexpr double kPageSample = 0.04;  // s, between positions that are written
+constexpr size_t kMostFutures = 20;  // more of them hide one another
 
 // The observed frames from one on and what follows them; axes: of the picture's x, y and z.
 AnimatedPerson PersonOf(const ForecastScene& scene, const Trajectories& next, int from,
@@ -49,25 +47,6 @@ AnimatedPerson PersonOf(const ForecastScene& scene, const Trajectories& next, in
   return person;
 }
 
-// From one of the observed frames on; the lowest point stands on the ground.
-Animation ToAnimation(const ForecastScene& scene, int from) {
-  Animation animation{scene.title, scene.dt, {}, {}, {}, {}};
-  animation.people.push_back(PersonOf(scene, scene.recorded, from, ""));
-  animation.people.back().recorded = true;
-  for (size_t i = 0; i < std::min(kMostFutures, scene.futures.size()); ++i) {
-    animation.people.push_back(PersonOf(scene, scene.futures[i].motion, from, "sampled futures"));
-  }
-  animation.people.push_back(PersonOf(scene, scene.forecast, from, "forecast"));
-  double low = 0.0;
-  for (const AnimatedPerson& person : animation.people) {
-    for (const auto& joints : person.joints) low = std::min(low, joints.row(2).minCoeff());
-  }
-  for (AnimatedPerson& person : animation.people) {
-    for (auto& joints : person.joints) joints.row(2).array() -= low;
-  }
-  return animation;
-}
-
 // Particles in the order of a BVH file, every one followed by what hangs on it.
 void AddBelow(const ParticleLayout& layout, int parent, std::vector<int>* order) {
   for (int i = 0; i < layout.num_particles(); ++i) {
@@ -75,11 +54,6 @@ void AddBelow(const ParticleLayout& layout, int parent, std::vector<int>* order)
     order->push_back(i);
     AddBelow(layout, i, order);
   }
-}
-
-std::string WithoutEnding(const std::string& path) {
-  const std::filesystem::path whole(path);
-  return (whole.parent_path() / whole.stem()).string();
 }
 
 void AppendRows(const char* source, int future, const Trajectories& motion, int first_frame,
@@ -119,12 +93,22 @@ MaybeError WriteOneBvh(const std::string& path, const ForecastScene& scene,
 
 }  // namespace
 
-std::string ForecastPageHtml(const ForecastScene& scene) {
-  return AnimationHtml({ToAnimation(scene, 0)}, kPageSample);
-}
-
-std::string ForecastStripSvg(const ForecastScene& scene, int poses) {
-  return PoseStrip(ToAnimation(scene, scene.num_observed() - 1), poses).ToString();
+Animation ToAnimation(const ForecastScene& scene, int from) {
+  Animation animation{scene.title, scene.dt, {}, {}, {}, {}};
+  animation.people.push_back(PersonOf(scene, scene.recorded, from, ""));
+  animation.people.back().recorded = true;
+  for (size_t i = 0; i < std::min(kMostFutures, scene.futures.size()); ++i) {
+    animation.people.push_back(PersonOf(scene, scene.futures[i].motion, from, "sampled futures"));
+  }
+  animation.people.push_back(PersonOf(scene, scene.forecast, from, "forecast"));
+  double low = 0.0;
+  for (const AnimatedPerson& person : animation.people) {
+    for (const auto& joints : person.joints) low = std::min(low, joints.row(2).minCoeff());
+  }
+  for (AnimatedPerson& person : animation.people) {
+    for (auto& joints : person.joints) joints.row(2).array() -= low;
+  }
+  return animation;
 }
 
 BvhMotion ToBvh(const Trajectories& motion, const ParticleLayout& layout, double dt) {
@@ -186,7 +170,8 @@ Result<std::vector<std::string>> WritePoses(const std::string& path, const Forec
   std::vector<std::string> files = {path};
   if (MaybeError error = WriteOneBvh(path, scene, scene.forecast)) return *error;
   for (size_t i = 0; i < scene.futures.size(); ++i) {
-    files.push_back(WithoutEnding(path) + "_future_" + std::to_string(i + 1) + ".bvh");
+    const std::string stem = std::filesystem::path(path).replace_extension().string();
+    files.push_back(stem + "_future_" + std::to_string(i + 1) + ".bvh");
     if (MaybeError error = WriteOneBvh(files.back(), scene, scene.futures[i].motion)) return *error;
   }
   return files;

@@ -6,7 +6,7 @@
 
 #include "datasets/files/error.h"
 #include "datasets/formats/bvh.h"
-#include "ident/bodies/body_recording.h"
+#include "ident/bodies/animation.h"
 #include "models/generators/motion_generator.h"
 
 namespace pushid {
@@ -32,12 +32,11 @@ BvhMotion ToBvh(const Trajectories& motion, const ParticleLayout& layout, double
 // ("out_future_1.bvh"). .csv: frame,time_s,source,future,joint,x_m,y_m,z_m with source observed,
 // recorded, forecast or future. Returns the files' names. Errors: another ending.
 Result<std::vector<std::string>> WritePoses(const std::string& path, const ForecastScene& scene);
-// Whether the ending is one of these.
+// Errors: an ending that is none of these.
 MaybeError CheckPosesPath(const std::string& flag, const std::string& path);
 
-// As bodies are shown (ident/bodies/animation.h): recorded grey, the forecast and up to 20 of the
-// futures in a colour each; the strip from the last observed frame on.
-std::string ForecastStripSvg(const ForecastScene& scene, int poses);
-std::string ForecastPageHtml(const ForecastScene& scene);
+// As bodies are shown, from one of the observed frames on: recorded grey, the forecast and up to 20
+// of the futures in a colour each; the lowest point stands on the ground.
+Animation ToAnimation(const ForecastScene& scene, int from);
 
 }  // namespace pushid

@@ -23,7 +23,7 @@
 
 namespace pushid {
 
-// How far forecasts are from what was recorded, by action and horizon.
+// Distances of forecasts from what was recorded, by action and horizon.
 //
 // MPJPE: mean distance of joints, all 38 of CMU's, where joints that share a place count with it
 // and those that never move are right. The mean over all is that of the actions' means.

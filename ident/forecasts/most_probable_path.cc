@@ -1,4 +1,4 @@
-// ident: nodes, their action, and the solver.
+// ident: most probable paths: nodes, their action, and the solver.
 #include "ident/forecasts/most_probable_path.h"
 
 #include <ceres/dynamic_autodiff_cost_function.h>
@@ -16,48 +16,11 @@
 namespace pushid {
 namespace {
 
-constexpr int kLanes = 12;              // of Jets: three nodes of one person
+constexpr int kLanes = 12;              // of Jets: three nodes
 constexpr double kFurthestEnd = 100.0;  // m, m/s, rad/s
 constexpr const char* kEndNames[] = {"x", "y", "theta", "phi", "xd", "yd", "thetad", "phid"};
 
-// Nodes: q of everybody, frame by frame.
-using Nodes = std::vector<std::vector<double>>;
-
-struct PathProblem {
-  const Scene* scene;
-  ModelOptions options;
-  std::vector<ParameterSet<double>> parameters;
-  ceres::Problem problem;
-
-  void AddActions(Nodes* nodes) {
-    const int people = scene->num_people();
-    for (std::vector<double>& node : *nodes) {
-      problem.AddParameterBlock(node.data(), static_cast<int>(node.size()));
-    }
-    for (size_t t = 1; t + 1 < nodes->size(); ++t) {
-      using Cost = ceres::DynamicAutoDiffCostFunction<SceneAction, kLanes>;
-      auto* cost = new Cost(new SceneAction{scene, &options, &parameters, static_cast<int>(t)});
-      for (int i = 0; i < 3; ++i) cost->AddParameterBlock(4 * people);
-      cost->SetNumResiduals(SceneAction::kRows * people);
-      problem.AddResidualBlock(
-          cost, nullptr, {(*nodes)[t - 1].data(), (*nodes)[t].data(), (*nodes)[t + 1].data()});
-    }
-  }
-
-  // Errors: no optimum, and why.
-  MaybeError Solve(ProbablePath* path) {
-    ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-    solver.max_num_iterations = 200;
-    solver.function_tolerance = 1e-12;
-    solver.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem, &summary);
-    path->iterations = static_cast<int>(summary.iterations.size()) - 1;
-    if (summary.termination_type == ceres::CONVERGENCE) return std::nullopt;
-    return Error{"no most probable path was found: " + summary.message};
-  }
-};
+using Nodes = std::vector<Vector4<double>>;  // q, frame by frame
 
 MaybeError CheckNoise(const IdentifiedModel& model) {
   const std::string file = model.source.empty() ? "the model" : model.source;
@@ -96,35 +59,29 @@ Vector4<double> Between(const PathEnd& from, const PathEnd& to, double share, do
          s * s * s * (leaving + arriving - 2.0 * apart);
 }
 
-void EvaluatePath(PathProblem* problem, const Nodes& nodes, ProbablePath* path) {
-  const Scene& scene = *problem->scene;
-  const int people = scene.num_people(), frames = static_cast<int>(nodes.size());
-  path->states = RolloutPath<double>(frames, people);
-  path->noise = FrameTable<Vector4<double>>(frames, people);
+// The states of the nodes, and the noise and the action of each frame between the ends.
+void EvaluatePath(const SceneAction& action, const Nodes& nodes, ProbablePath* path) {
+  const double dt = action.scene->dt;
+  const int frames = static_cast<int>(nodes.size());
+  path->states = RolloutPath<double>(frames, 1);
+  path->noise = FrameTable<Vector4<double>>(frames, 1);
   for (int t = 0; t < frames; ++t) {
     const int before = std::max(0, t - 1), after = std::min(frames - 1, t + 1);
-    for (int n = 0; n < people; ++n) {
-      PendulumState<double>& state = path->states.At(t, n);
-      for (int i = 0; i < 4; ++i) {
-        state.q[i] = nodes[t][4 * n + i];
-        state.qd[i] =
-            (nodes[after][4 * n + i] - nodes[before][4 * n + i]) / ((after - before) * scene.dt);
-      }
-      path->noise.At(t, n).setZero();
-    }
-  }
-  std::vector<double> rows(SceneAction::kRows * people);
-  for (int t = 1; t + 1 < frames; ++t) {
+    path->states.At(t, 0).q = nodes[t];
+    path->states.At(t, 0).qd = (nodes[after] - nodes[before]) / ((after - before) * dt);
+    path->noise.At(t, 0).setZero();
+    if (t == 0 || t + 1 == frames) continue;
     const double* const at[] = {nodes[t - 1].data(), nodes[t].data(), nodes[t + 1].data()};
-    SceneAction{&scene, &problem->options, &problem->parameters, t}(at, rows.data());
-    for (int n = 0; n < people; ++n) {
-      const double* const own = rows.data() + SceneAction::kRows * n;
-      const Vector4<double> white(own[0], own[1], own[2], own[3]);
-      path->noise_action += 0.5 * white.squaredNorm();
-      path->divergence_action += 0.5 * own[4] * own[4] - kDivergenceShift;
-      path->noise.At(t, n) = NoiseFactor<double>(scene.people[n].body, problem->parameters[n]) *
-                             white / std::sqrt(scene.dt);
-    }
+    double rows[SceneAction::kRows];
+    SceneAction of_frame = action;
+    of_frame.frame = t;
+    of_frame(at, rows);
+    const Vector4<double> white(rows[0], rows[1], rows[2], rows[3]);
+    path->noise_action += 0.5 * white.squaredNorm();
+    path->divergence_action += 0.5 * rows[4] * rows[4] - kDivergenceShift;
+    path->noise.At(t, 0) =
+        NoiseFactor<double>(action.scene->people[0].body, action.parameters->front()) * white /
+        std::sqrt(dt);
   }
 }
 
@@ -139,26 +96,45 @@ Result<ProbablePath> PathBetween(const IdentifiedModel& model, const Body& body,
   Scene scene;
   scene.dt = 1.0 / fps;
   scene.people.push_back({body, {}});
-  PathProblem problem{&scene, model.options, {model.parameters}, {}};
+  const std::vector<ParameterSet<double>> parameters = {model.parameters};
+  const SceneAction action = {&scene, &model.options, &parameters};
   Nodes nodes;
   const double seconds = (num_frames - 1) * scene.dt;
   for (int t = 0; t < num_frames; ++t) {
-    const Vector4<double> q = Between(from, to, t / (num_frames - 1.0), seconds);
-    nodes.emplace_back(q.data(), q.data() + 4);
+    nodes.push_back(Between(from, to, t / (num_frames - 1.0), seconds));
   }
-  problem.AddActions(&nodes);
+  ceres::Problem problem;
+  for (Vector4<double>& node : nodes) problem.AddParameterBlock(node.data(), 4);
+  for (int t = 1; t + 1 < num_frames; ++t) {
+    auto* at_frame = new SceneAction(action);
+    at_frame->frame = t;
+    auto* cost = new ceres::DynamicAutoDiffCostFunction<SceneAction, kLanes>(at_frame);
+    for (int i = 0; i < 3; ++i) cost->AddParameterBlock(4);
+    cost->SetNumResiduals(SceneAction::kRows);
+    problem.AddResidualBlock(cost, nullptr,
+                             {nodes[t - 1].data(), nodes[t].data(), nodes[t + 1].data()});
+  }
   // A velocity is held by the node next to the end.
   const auto hold = [&](size_t at, const Vector4<double>& q) {
-    nodes[at].assign(q.data(), q.data() + 4);
-    problem.problem.SetParameterBlockConstant(nodes[at].data());
+    nodes[at] = q;
+    problem.SetParameterBlockConstant(nodes[at].data());
   };
   hold(0, from.state.q);
   hold(1, from.state.q + scene.dt * from.state.qd);
   hold(num_frames - 1, to.state.q);
   if (to.rates_held) hold(num_frames - 2, to.state.q - scene.dt * to.state.qd);
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  solver.max_num_iterations = 200;
+  solver.function_tolerance = 1e-12;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  if (summary.termination_type != ceres::CONVERGENCE) {
+    return Error{"no most probable path was found: " + summary.message};
+  }
   ProbablePath path;
-  if (MaybeError error = problem.Solve(&path)) return *error;
-  EvaluatePath(&problem, nodes, &path);
+  EvaluatePath(action, nodes, &path);
   return path;
 }
 
@@ -183,20 +159,15 @@ Result<PathEnd> ParsePathEnd(const std::string& flag, const std::string& text, b
 }
 
 MaybeError WritePathCsv(const std::string& file, const ProbablePath& path, double dt) {
-  const int people = path.states.num_people();
   std::string text = "frame,time_s";
-  for (int n = 0; n < people; ++n) {
-    for (const char* name : kEndNames) text += ",p" + std::to_string(n) + "_" + name;
-    for (int i = 0; i < 4; ++i) text += ",p" + std::to_string(n) + "_noise_" + kEndNames[i];
-  }
+  for (const char* name : kEndNames) text += std::string(",p0_") + name;
+  for (int i = 0; i < 4; ++i) text += std::string(",p0_noise_") + kEndNames[i];
   text += "\n";
   for (int t = 0; t < path.states.num_frames(); ++t) {
     text += std::to_string(t) + "," + DoubleText(t * dt);
-    for (int n = 0; n < people; ++n) {
-      const PendulumState<double>& state = path.states.At(t, n);
-      for (double value : state.q) text += "," + DoubleText(value);
-      for (double value : state.qd) text += "," + DoubleText(value);
-      for (double value : path.noise.At(t, n)) text += "," + DoubleText(value);
+    const PendulumState<double>& state = path.states.At(t, 0);
+    for (const Vector4<double>& values : {state.q, state.qd, path.noise.At(t, 0)}) {
+      for (const double value : values) text += "," + DoubleText(value);
     }
     text += "\n";
   }

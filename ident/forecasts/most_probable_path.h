@@ -21,13 +21,13 @@ struct PathEnd {
   bool rates_held = true;  // false: only the place is held
 };
 
+// A path of one person.
 struct ProbablePath {
   RolloutPath<double> states;
   FrameTable<Vector4<double>> noise;  // generalized force that drove each frame beside the model's
   // -log probability, relative to other paths of the same frames under the same model: of the noise
   // and of the divergence, nats.
   double noise_action = 0.0, divergence_action = 0.0;
-  int iterations = 0;
 
   double action() const { return noise_action + divergence_action; }
 };
@@ -42,7 +42,7 @@ Result<ProbablePath> PathBetween(const IdentifiedModel& model, const Body& body,
 // named is 0. Rates are held where one of them is named, or `always`.
 Result<PathEnd> ParsePathEnd(const std::string& flag, const std::string& text, bool always);
 
-// frame, time_s and, per person, q, qd and the noise.
+// frame, time_s, q, qd and the noise (p0_x, ...).
 MaybeError WritePathCsv(const std::string& file, const ProbablePath& path, double dt);
 
 }  // namespace pushid

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 
 #include "datasets/files/number_text.h"
@@ -13,16 +14,6 @@
 
 namespace pushid {
 namespace {
-
-bool AllBuiltIn(const std::set<std::string>& names) {
-  return std::all_of(names.begin(), names.end(), [](const std::string& name) {
-    return FromName<SocialState>(name).has_value();
-  });
-}
-
-int SymbolOf(const std::vector<std::string>& names, const std::string& name) {
-  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
-}
 
 MaybeError FindByClassifier(const StateTable& table, const std::vector<BodyRecording>& recordings,
                             SocialCues* cues) {
@@ -66,29 +57,13 @@ std::vector<Symbols> StatesOfAll(const Groups& groups, const StateFunction& stat
   return all;
 }
 
-size_t LongestOf(const std::vector<Symbols>& all) {
-  size_t longest = 0;
-  for (const Symbols& symbols : all) longest = std::max(longest, symbols.size());
-  return longest;
-}
-
-// Into frame k, of those who last so long.
+// Steps into frame k, of those who last so long.
 std::vector<Symbols> StepsInto(const std::vector<Symbols>& all, size_t k) {
   std::vector<Symbols> steps;
   for (const Symbols& symbols : all) {
     if (k < symbols.size()) steps.push_back({symbols[k - 1], symbols[k]});
   }
   return steps;
-}
-
-ByFrame SscpByFrame(const Eigen::MatrixXd& recorded, const std::vector<Symbols>& all) {
-  ByFrame by_frame;
-  for (size_t k = 1; k < LongestOf(all); ++k) {
-    by_frame.push_back(JensenShannon(
-        recorded,
-        CountTransitions(StepsInto(all, k), static_cast<int>(recorded.rows()), Transitions::kAll)));
-  }
-  return by_frame;
 }
 
 void AddWords(const MotionWords& words, const Groups& groups, SocialRow* row) {
@@ -99,13 +74,8 @@ void AddWords(const MotionWords& words, const Groups& groups, SocialRow* row) {
     const std::vector<double> scores = words.Scores(person);
     sums.resize(std::max(sums.size(), scores.size()));
     counts.resize(sums.size());
-    double of_person = 0.0;
-    for (size_t k = 0; k < scores.size(); ++k) {
-      sums[k] += scores[k];
-      counts[k] += 1.0;
-      of_person += scores[k];
-    }
-    sum += of_person;
+    for (size_t k = 0; k < scores.size(); ++k) sums[k] += scores[k], counts[k] += 1.0;
+    sum += std::accumulate(scores.begin(), scores.end(), 0.0);
     count += static_cast<double>(scores.size());
   }
   if (count > 0.0) row->ndms = sum / count;
@@ -124,9 +94,14 @@ SocialRow Compared(const std::string& name, const Groups& groups, const SocialRe
   recorded.diagonal().setZero();
   changes.diagonal().setZero();
   row.sscp_changes = JensenShannon(recorded, changes);
-  row.sscp_by_frame = SscpByFrame(report.transitions, counted);
-  for (size_t k = 1; k < LongestOf(counted); ++k) {
-    row.people.push_back(static_cast<int>(StepsInto(counted, k).size()));
+  size_t longest = 0;
+  for (const Symbols& symbols : counted) longest = std::max(longest, symbols.size());
+  for (size_t k = 1; k < longest; ++k) {
+    const std::vector<Symbols> steps = StepsInto(counted, k);
+    row.people.push_back(static_cast<int>(steps.size()));
+    row.sscp_by_frame.push_back(JensenShannon(
+        report.transitions,
+        CountTransitions(steps, report.cues.states.num_symbols(), Transitions::kAll)));
   }
   if (words != nullptr) AddWords(*words, groups, &row);
   return row;
@@ -199,7 +174,10 @@ Result<SocialCues> SocialCuesOf(const StateTable& table, const std::vector<std::
     for (const auto& person : states.value().people) names.insert(person.begin(), person.end());
     cues.annotated.push_back(std::move(states.value()));
   }
-  if (AllBuiltIn(names)) return cues;
+  const auto is_built_in = [](const std::string& name) {
+    return FromName<SocialState>(name).has_value();
+  };
+  if (std::all_of(names.begin(), names.end(), is_built_in)) return cues;
   cues.states.names.assign(names.begin(), names.end());
   if (MaybeError error = FindByClassifier(table, recordings, &cues)) return *error;
   return cues;
@@ -210,11 +188,12 @@ GroupMotion RecordedGroup(const BodyRecording& recording, const SocialCues& cues
   const PendulumRecording& pendulum = recording.pendulum;
   GroupMotion group{recording.bodies, pendulum.scene.dt, pendulum.pushed_person, first_frame};
   if (!annotated || cues.annotated.empty()) return group;
-  const RecordedStates& states = cues.annotated[index];
-  for (const std::vector<std::string>& person : states.people) {
-    group.states.emplace_back();
+  const std::vector<std::string>& names = cues.states.names;
+  for (const std::vector<std::string>& person : cues.annotated[index].people) {
+    Symbols& states = group.states.emplace_back();
     for (const std::string& name : person) {
-      group.states.back().push_back(SymbolOf(cues.states.names, name));
+      const auto found = std::find(names.begin(), names.end(), name);
+      states.push_back(static_cast<int>(found - names.begin()));
     }
   }
   return group;

@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "datasets/manifest/recording.h"
@@ -19,15 +20,13 @@ namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr TensorFolderKind kGeneratorFolder = {"generator", "--model",
-                                               "pushid-train-generator --out", 1};
+constexpr TensorFolderKind kGeneratorFolder = {
+    "generator", "--model", "pushid-train-generator --out", 1, AllNames<GeneratorKind>};
 constexpr int kMostParticles = 1000;
 
 void Demand(bool holds, const std::string& what) {
   if (!holds) throw std::runtime_error(what);
 }
-
-bool IsKind(const std::string& name) { return FromName<GeneratorKind>(name).has_value(); }
 
 void CheckLayout(const ParticleLayout& layout) {
   const int count = layout.num_particles();
@@ -42,49 +41,25 @@ void CheckLayout(const ParticleLayout& layout) {
   }
 }
 
-// The networks of each kind.
-
-// How many a file has.
-int ReadMembers(const Json& json) {
-  constexpr int kMostMembers = 100;
-  const int members = json.at("members");
-  Demand(members >= 1 && members <= kMostMembers, "members must be 1 to 100");
-  return members;
-}
-
-// What their tensors are called.
+// Networks of one kind: "member0", ... in a file, or by another name.
 constexpr char kMember[] = "member";
-std::string MemberName(size_t member, const std::string& name = kMember) {
-  return name + std::to_string(member);
-}
+constexpr char kSimlpePartner[] = "simlpe";  // beside particles
+
 template <typename Network>
 void AddMembers(const std::string& name, const std::vector<Network>& members, TensorList* tensors) {
-  for (size_t m = 0; m < members.size(); ++m) AddTensors(MemberName(m, name), members[m], tensors);
+  for (size_t m = 0; m < members.size(); ++m) {
+    AddTensors(name + std::to_string(m) + ".", members[m], tensors);
+  }
 }
+
 template <typename Network>
-TensorList TensorsOf(const std::vector<Network>& members) {
-  TensorList tensors;
-  AddMembers(kMember, members, &tensors);
-  return tensors;
-}
-
-constexpr int kMostCorrected = 100000, kMostBlocks = 1000;
-constexpr char kSimlpePartner[] = "simlpe";  // of its tensors, beside particles
-
-Json SimlpeSettings(const std::vector<SimlpeNetwork>& members) {
-  return {{"members", members.size()},
-          {"blocks", members.empty() ? 0 : members.front().blocks.size()}};
-}
-
-std::vector<SimlpeNetwork> ReadSimlpeMembers(const std::string& name, const Json& json,
-                                             const GeneratorSettings& settings,
-                                             TensorReader* reader) {
-  const int count = ReadMembers(json), blocks = json.at("blocks");
-  Demand(blocks >= 1 && blocks <= kMostBlocks, "blocks must be 1 to 1000");
-  std::vector<SimlpeNetwork> members;
+std::vector<Network> TakeMembers(const std::string& name, const Json& json, const Network& shape,
+                                 TensorFields* reader) {
+  const int count = json.at("members");
+  Demand(count >= 1 && count <= 100, "members must be 1 to 100");
+  std::vector<Network> members;
   for (int m = 0; m < count; ++m) {
-    members.push_back(TakeSimlpe(MemberName(m, name), settings.observed,
-                                 settings.layout.num_coordinates(), blocks, reader));
+    members.push_back(TakeTensors(name + std::to_string(m) + ".", shape, reader));
   }
   return members;
 }
@@ -93,33 +68,6 @@ double ReadShare(const Json& json, const char* key) {
   const double share = json.value(key, 0.0);  // older files know no siMLPe
   Demand(share >= 0.0 && share <= 1.0, std::string(key) + " must lie between 0 and 1");
   return share;
-}
-
-Json SettingsJson(const TrainedNetworks& trained) {
-  Json json = JsonOf(trained.settings);
-  for (const PushKind kind : trained.settings.push_kinds) {
-    json["push_kinds"].push_back(NameOf(kind));
-  }
-  json.update(trained.of_kind->Settings());
-  return json;
-}
-
-TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
-  const Json& json = *folder.settings;
-  TrainedNetworks trained;
-  GeneratorSettings& settings = trained.settings;
-  ReadJson(json, &settings);
-  CheckLayout(settings.layout);
-  for (const Json& name : json.value("push_kinds", Json::array())) {
-    const std::optional<PushKind> kind = FromName<PushKind>(name.get<std::string>());
-    Demand(kind.has_value(), "push_kinds has " + name.dump() + ", which is not a kind of push");
-    settings.push_kinds.push_back(*kind);
-  }
-  settings.training = folder.training;
-  GeneratorKind kind{};
-  ParseName("kind", folder.kind, &kind);  // ReadTensorFolder has checked it
-  trained.of_kind = RowOf(kind).read(json, settings, reader);
-  return trained;
 }
 
 }  // namespace
@@ -134,7 +82,7 @@ void Fields(JsonArchive& a, ParticleStructure& s) {
   if (a.Has("corrected_frames")) a("corrected_frames", s.corrected_frames);
   a.Check(s.particles || s.poses, "particles or poses must be true");
   a.Check(!s.noisy_input || s.particles != s.poses, "noisy_input needs one of particles and poses");
-  a.Check(s.corrected_frames >= 0 && s.corrected_frames <= kMostCorrected,
+  a.Check(s.corrected_frames >= 0 && s.corrected_frames <= 100000,
           "corrected_frames must be 0 to 100000");
 }
 
@@ -145,45 +93,55 @@ void Fields(JsonArchive& a, DiffusionStructure& s) {
 }
 
 Json TrainedParticles::Settings() const {
+  const std::vector<SimlpeNetwork>& simlpe = partners.simlpe;
   Json json = {{"members", members.size()}};
   json.update(JsonOf(members.front().structure));
   json.update(Json{{"jitter", jitter},
                    {"ridge_share", ridge_share},
                    {"simlpe_share", simlpe_share},
-                   {"simlpe", SimlpeSettings(partners.simlpe)}});
+                   {"simlpe",
+                    {{"members", simlpe.size()},
+                     {"blocks", simlpe.empty() ? 0 : simlpe.front().blocks.size()}}}});
   return json;
 }
 
 TensorList TrainedParticles::Tensors() const {
-  TensorList tensors = TensorsOf(members);
-  const RidgeForecast& ridge = partners.ridge;
-  if (ridge_share > 0.0) AddTensors("ridge", DenseLayer{ridge.weights, ridge.bias}, &tensors);
+  TensorList tensors;
+  AddMembers(kMember, members, &tensors);
+  if (ridge_share > 0.0) {
+    DenseLayer ridge = {partners.ridge.weights, partners.ridge.bias};
+    TensorFields(&tensors).Layer("ridge", 0, 0, &ridge);
+  }
   AddMembers(kSimlpePartner, partners.simlpe, &tensors);
   return tensors;
 }
 
 SharedNetworks ReadParticles(const Json& json, const GeneratorSettings& settings,
-                             TensorReader* reader) {
+                             TensorFields* reader) {
   const auto networks = std::make_shared<TrainedParticles>();
   TrainedParticles& trained = *networks;
-  const auto structure = FromJson<ParticleStructure>(json);
+  const int size = settings.layout.num_coordinates();
+  ParticleNetwork shape;
+  ReadJson(json, &shape.structure);
+  shape.pose_mean.resize(size);
   trained.jitter = json.at("jitter");
   trained.ridge_share = ReadShare(json, "ridge_share");
   trained.simlpe_share = ReadShare(json, "simlpe_share");
   Demand(trained.jitter >= 0.0, "jitter must not be negative");
-  const int members = ReadMembers(json), size = settings.layout.num_coordinates();
-  for (int m = 0; m < members; ++m) {
-    trained.members.push_back(TakeParticles(MemberName(m), structure, size, reader));
-  }
+  trained.members = TakeMembers(kMember, json, shape, reader);
   if (trained.simlpe_share > 0.0) {
-    trained.partners.simlpe =
-        ReadSimlpeMembers(kSimlpePartner, json.at("simlpe"), settings, reader);
+    const int blocks = json.at("simlpe").at("blocks");
+    Demand(blocks >= 1 && blocks <= 1000, "blocks must be 1 to 1000");
+    SimlpeNetwork simlpe;
+    simlpe.pose_mean.resize(size);
+    simlpe.blocks.resize(static_cast<size_t>(blocks));
+    simlpe.blocks.front().mix.bias.resize(settings.observed);
+    trained.partners.simlpe = TakeMembers(kSimlpePartner, json.at("simlpe"), simlpe, reader);
   }
   if (trained.ridge_share <= 0.0) return networks;
   Demand(settings.observed > kRidgeDisplacements, "the ridge needs more observed frames");
   DenseLayer ridge;
-  TensorFields(reader).Layer("ridge", size * (1 + kRidgeDisplacements), size * settings.predicted,
-                             &ridge);
+  reader->Layer("ridge", size * (1 + kRidgeDisplacements), size * settings.predicted, &ridge);
   trained.partners.ridge = {ridge.weights, ridge.bias};
   return networks;
 }
@@ -197,7 +155,11 @@ std::unique_ptr<MotionGenerator> TrainedParticles::Make(const GeneratorSettings&
   return std::make_unique<ParticleGenerator>(settings.layout, members, partners, options);
 }
 
-TensorList TrainedDiffusion::Tensors() const { return TensorsOf(members); }
+TensorList TrainedDiffusion::Tensors() const {
+  TensorList tensors;
+  AddMembers(kMember, members, &tensors);
+  return tensors;
+}
 
 Json TrainedDiffusion::Settings() const {
   Json json = {{"members", members.size()}};
@@ -205,15 +167,13 @@ Json TrainedDiffusion::Settings() const {
   return json;
 }
 
-SharedNetworks ReadDiffusion(const nlohmann::ordered_json& json, const GeneratorSettings& settings,
-                             TensorReader* reader) {
+SharedNetworks ReadDiffusion(const Json& json, const GeneratorSettings& settings,
+                             TensorFields* reader) {
   Demand(settings.layout.num_particles() == kBodyJoints, "diffusion needs bodies of 22 joints");
+  DiffusionNetwork shape;
+  ReadJson(json, &shape.structure);
   const auto trained = std::make_shared<TrainedDiffusion>();
-  const auto structure = FromJson<DiffusionStructure>(json);
-  const int members = ReadMembers(json);
-  for (int m = 0; m < members; ++m) {
-    trained->members.push_back(TakeDiffusion(MemberName(m), structure, reader));
-  }
+  trained->members = TakeMembers(kMember, json, shape, reader);
   return trained;
 }
 
@@ -249,33 +209,40 @@ void Fields(JsonArchive& a, GeneratorSettings& settings) {
   PUSHID_FIELDS(a, settings, observed, predicted);
   a("rate_hz", settings.rate);
   a("layout", settings.layout);
+  std::vector<std::string> kinds;
+  for (const PushKind kind : settings.push_kinds) kinds.push_back(NameOf(kind));
+  if (a.Has("push_kinds", !kinds.empty())) a("push_kinds", kinds);
+  for (size_t i = 0; Archive::kReads && i < kinds.size(); ++i) {
+    const std::optional<PushKind> kind = FromName<PushKind>(kinds[i]);
+    Demand(kind.has_value(), "push_kinds has '" + kinds[i] + "', which is not a kind of push");
+    settings.push_kinds.push_back(*kind);
+  }
   a.Check(settings.observed >= 1 && settings.predicted >= 1 && settings.rate > 0.0,
           "observed, predicted and rate_hz must be positive");
+  if (Archive::kReads) CheckLayout(settings.layout);
 }
 
 MaybeError WriteGenerator(const std::string& folder, const TrainedNetworks& trained) {
-  return WriteTensorFolder(kGeneratorFolder, folder,
-                           {NameOf(trained.kind()), SettingsJson(trained),
-                            trained.settings.training, trained.of_kind->Tensors()});
+  Json json = JsonOf(trained.settings);
+  json.update(trained.of_kind->Settings());
+  return WriteTensorFolder(
+      kGeneratorFolder, folder,
+      {NameOf(trained.kind()), json, trained.settings.training, trained.of_kind->Tensors()});
 }
 
 Result<TrainedNetworks> ReadGenerator(const std::string& folder) {
-  const Result<TensorFolder> read =
-      ReadTensorFolder(kGeneratorFolder, folder, Listed(AllNames<GeneratorKind>(), ","), IsKind);
+  const Result<TensorFolder> read = ReadTensorFolder(kGeneratorFolder, folder);
   if (!read.ok()) return read.error();
-  const std::string path = JsonFileOf(kGeneratorFolder, folder);
-  TensorReader reader(read.value().tensors);
-  TrainedNetworks trained;
-  try {
-    trained = Read(read.value(), &reader);
-  } catch (const std::exception& problem) {
-    return Error{std::string("settings: ") + problem.what() + "; train again with this version",
-                 path};
-  }
-  if (!reader.problem().empty()) {
-    return Error{reader.problem() + "; train again with this version", path};
-  }
-  return trained;
+  const TensorFolder& content = read.value();
+  return FromTensors(
+      content, JsonFileOf(kGeneratorFolder, folder), "settings: ", [&](TensorFields* reader) {
+        TrainedNetworks trained;
+        ReadJson(*content.settings, &trained.settings);
+        trained.settings.training = content.training;
+        const GeneratorKind kind = *FromName<GeneratorKind>(content.kind);
+        trained.of_kind = RowOf(kind).read(*content.settings, trained.settings, reader);
+        return trained;
+      });
 }
 
 ParticleLayout PushLayout(const std::vector<std::string>& joint_names) {
@@ -292,62 +259,43 @@ ParticleLayout PushLayout(const std::vector<std::string>& joint_names) {
   return layout;
 }
 
-PushedParticles ParticlesOf(const BodyRecording& recording, int person) {
+ObservedMotion ParticlesOf(const BodyRecording& recording, int person) {
   const BodyMotion& body = recording.bodies[person];
   const int frames = static_cast<int>(body.size());
-  PushedParticles particles;
-  particles.origin << body.front()(0, kBodyHip), body.front()(1, kBodyHip), 0.0;
-  Trajectories& motion = particles.motion.frames;
-  motion.resize(3 * kBodyJoints, frames);
-  for (int t = 0; t < frames; ++t) {
-    const Pose pose = body[t].colwise() - particles.origin;
-    motion.col(t) = pose.reshaped().cast<float>();
-  }
-  particles.motion.controls = Eigen::MatrixXf::Zero(kPushControls, frames);
+  const Eigen::Vector3d origin(body.front()(0, kBodyHip), body.front()(1, kBodyHip), 0.0);
   const Scene& scene = recording.pendulum.scene;
-  particles.motion.place = particles.origin.head<2>().cast<float>();
-  particles.motion.mass = static_cast<float>(scene.people[person].body.mass);
+  const double mass = scene.people[person].body.mass;
+  ObservedMotion motion;
+  motion.frames.resize(3 * kBodyJoints, frames);
+  for (int t = 0; t < frames; ++t) {
+    const Pose pose = body[t].colwise() - origin;
+    motion.frames.col(t) = pose.reshaped().cast<float>();
+  }
+  motion.controls = Eigen::MatrixXf::Zero(kPushControls, frames);
+  motion.place = origin.head<2>().cast<float>();
+  motion.mass = static_cast<float>(mass);
   for (const ScenePush& push : scene.pushes) {
     if (push.person != person) continue;
     for (int t = push.start_frame; t < std::min(frames, push.EndFrame()); ++t) {
-      particles.motion.controls.col(t) +=
-          (push.force[t - push.start_frame] / scene.people[person].body.mass).cast<float>();
+      motion.controls.col(t) += (push.force[t - push.start_frame] / mass).cast<float>();
     }
   }
-  return particles;
-}
-
-GroupHips PendulumHips(const BodyRecording& recording, const Prediction& prediction) {
-  GroupHips hips;
-  for (const RestorationInput& person : PredictedPeople(recording, prediction)) {
-    const Pose& first = person.first_pose;
-    const Eigen::Vector3d origin(first(0, kBodyHip), first(1, kBodyHip), 0.0);
-    Eigen::Matrix3Xf hip(3, person.q.size());
-    for (size_t t = 0; t < person.q.size(); ++t) {
-      const int frame = static_cast<int>(t);
-      hip.col(frame) = (TipAt(person, frame) - origin).cast<float>();
-    }
-    hips.push_back(std::move(hip));
-  }
-  return hips;
+  return motion;
 }
 
 Result<Prediction> PredictBeside(const GeneratorSettings& settings, const IdentifiedModel& physics,
                                  const BodyRecording& recording, int frames) {
-  Result<Prediction> predicted =
-      PredictFrom(physics, recording.pendulum, ShownToPhysics(settings), frames);
+  const int shown = settings.observed > 1 ? settings.observed : 0;  // one everybody has
+  Result<Prediction> predicted = PredictFrom(physics, recording.pendulum, shown, frames);
   if (!predicted.ok() || predicted.value().status.ok) return predicted;
   return Error{"recording " + recording.pendulum.id + ": physics " +
                    OutsideText(predicted.value().status) + "; leave out --physics",
                physics.source};
 }
 
-std::vector<ObservedMotion> GroupOf(const BodyRecording& recording, const GroupHips& hips) {
+std::vector<ObservedMotion> GroupOf(const BodyRecording& recording) {
   std::vector<ObservedMotion> group;
-  for (int n = 0; n < recording.num_people(); ++n) {
-    group.push_back(ParticlesOf(recording, n).motion);
-    if (!hips.empty()) group.back().pendulum = hips[n];
-  }
+  for (int n = 0; n < recording.num_people(); ++n) group.push_back(ParticlesOf(recording, n));
   return group;
 }
 
@@ -358,26 +306,21 @@ std::vector<PushKind> PushKindsOf(const Scene& scene) {
 }
 
 std::string OtherPushKinds(const GeneratorSettings& settings, const Scene& scene) {
-  if (settings.push_kinds.empty()) return "";
   const auto& learned = settings.push_kinds;
-  std::string known, other;
-  for (const PushKind kind : learned) known += (known.empty() ? "" : ", ") + NameOf(kind);
+  std::vector<std::string> known, other;
+  for (const PushKind kind : learned) known.push_back(NameOf(kind));
   for (const PushKind kind : PushKindsOf(scene)) {
-    if (std::find(learned.begin(), learned.end(), kind) != learned.end()) continue;
-    other += (other.empty() ? "" : ", ") + NameOf(kind);
+    if (std::count(learned.begin(), learned.end(), kind) == 0) other.push_back(NameOf(kind));
   }
-  if (other.empty()) return "";
-  return "the generator was trained on pushes of kind " + known +
-         " and is applied to pushes of kind " + other +
+  if (known.empty() || other.empty()) return "";
+  return "the generator was trained on pushes of kind " + Joined(known) +
+         " and is applied to pushes of kind " + Joined(other) +
          ": predicted displacements may be too large or too small (an external push is complete, "
          "the others continue after their frames)";
 }
 
-bool AtRateOf(const GeneratorSettings& settings, double dt) {
-  return std::abs(1.0 / dt - settings.rate) <= 0.01 * settings.rate;
-}
-
-BodyMotion BodyFromParticles(const Trajectories& motion, const Eigen::Vector3d& origin) {
+BodyMotion BodyFromParticles(const Trajectories& motion, const Eigen::Vector2f& place) {
+  const Eigen::Vector3d origin(place.x(), place.y(), 0.0);
   BodyMotion body(motion.cols());
   for (size_t t = 0; t < body.size(); ++t) {
     const Eigen::VectorXd pose = motion.col(static_cast<Eigen::Index>(t)).cast<double>();
@@ -389,9 +332,9 @@ BodyMotion BodyFromParticles(const Trajectories& motion, const Eigen::Vector3d& 
 Result<std::vector<BodyMotion>> GenerateBodies(const GeneratorSettings& settings,
                                                const MotionGenerator& generator,
                                                const BodyRecording& recording,
-                                               const GroupHips& hips, int frames) {
+                                               const IdentifiedModel* physics, int frames) {
   const double dt = recording.pendulum.scene.dt;
-  if (!AtRateOf(settings, dt)) {
+  if (std::abs(1.0 / dt - settings.rate) > 0.01 * settings.rate) {
     return Error{"recording " + recording.pendulum.id + " has " + Rounded(1.0 / dt, 3) +
                  " frames per second; the generator was trained at " + Rounded(settings.rate, 3) +
                  ": resample the recording"};
@@ -403,17 +346,29 @@ Result<std::vector<BodyMotion>> GenerateBodies(const GeneratorSettings& settings
                  std::to_string(std::min(frames, recorded)) + " frames; the generator is given " +
                  std::to_string(observed) + " and has nothing to forecast"};
   }
-  std::vector<ObservedMotion> people = GroupOf(recording, hips);
+  std::vector<ObservedMotion> people = GroupOf(recording);
   for (ObservedMotion& person : people) {
-    person.frames = Trajectories(person.frames.leftCols(observed));
+    person.frames.conservativeResize(Eigen::NoChange, observed);
+  }
+  if (physics != nullptr) {
+    const Result<Prediction> predicted = PredictBeside(settings, *physics, recording, frames);
+    if (!predicted.ok()) return predicted.error();
+    const auto pendulums = PredictedPeople(recording, predicted.value());
+    for (size_t n = 0; n < people.size(); ++n) {
+      const Eigen::Vector3d origin(pendulums[n].first_pose(0, kBodyHip),
+                                   pendulums[n].first_pose(1, kBodyHip), 0.0);
+      people[n].pendulum.resize(3, static_cast<Eigen::Index>(pendulums[n].q.size()));
+      for (int t = 0; t < people[n].pendulum.cols(); ++t) {
+        people[n].pendulum.col(t) = (TipAt(pendulums[n], t) - origin).cast<float>();
+      }
+    }
   }
   const std::vector<Trajectories> forecasts = generator.Forecast(people, frames - observed);
   std::vector<BodyMotion> bodies;
   for (size_t n = 0; n < people.size(); ++n) {
     Trajectories whole(people[n].frames.rows(), frames);
     whole << people[n].frames, forecasts[n];
-    const Eigen::Vector2d place = people[n].place.cast<double>();
-    bodies.push_back(BodyFromParticles(whole, {place.x(), place.y(), 0.0}));
+    bodies.push_back(BodyFromParticles(whole, people[n].place));
   }
   return bodies;
 }

@@ -34,13 +34,22 @@ namespace pushid {
 // The tables are two, because nothing but pushid-train-generator needs LibTorch, and a program
 // links everything in the tables it reads.
 
-struct GeneratorSettings;         // ident/generators/generator_files.h
 struct GeneratorSamples;          // ident/training/generator_training.h
 struct GeneratorTrainingOptions;  // ident/training/generator_training.h
 
 enum class GeneratorKind { kParticles, kDiffusion };
 
-// What may differ from the training. Shares of the blend in `particles` are taken as trained.
+struct GeneratorSettings {
+  int observed = 25;                      // frames that it is given
+  int predicted = 25;                     // frames that it was trained to forecast
+  double rate = 25.0;                     // Hz
+  std::vector<PushKind> push_kinds = {};  // of the pushes learned from; empty: not known
+  ParticleLayout layout;
+  KeptJson training{};  // provenance
+};
+
+// Settings that may differ from the training. Shares of the blend in `particles` are taken as
+// trained.
 struct GeneratorChanges {
   bool ridge = true, simlpe = true;  // false: left out of the blend
   ParticleGeneratorOptions particles = {};
@@ -71,7 +80,7 @@ using SharedNetworks = std::shared_ptr<const KindNetworks>;
 // settings: as Settings() says; of_all: what every kind has. Throws nlohmann's exceptions, and
 // Demand's where something does not fit.
 using GeneratorReader = SharedNetworks(const nlohmann::ordered_json& settings,
-                                       const GeneratorSettings& of_all, TensorReader* reader);
+                                       const GeneratorSettings& of_all, TensorFields* reader);
 GeneratorReader ReadParticles, ReadDiffusion;
 
 struct GeneratorKindRow {
@@ -112,15 +121,6 @@ inline std::string KindsOfGroups() {
   return AnyName<GeneratorKind>([](const GeneratorKindRow& row) { return row.groups; });
 }
 
-struct GeneratorSettings {
-  int observed = 25;                      // frames that it is given
-  int predicted = 25;                     // frames that it was trained to forecast
-  double rate = 25.0;                     // Hz
-  std::vector<PushKind> push_kinds = {};  // of the pushes learned from; empty: not known
-  ParticleLayout layout;
-  KeptJson training{};  // provenance
-};
-
 struct TrainedNetworks {
   GeneratorSettings settings;
   SharedNetworks of_kind;
@@ -130,11 +130,6 @@ struct TrainedNetworks {
     return of_kind->Make(settings, changes);
   }
 };
-
-// Frames that physics beside a generator see, as it does: one is the first, which everybody has.
-inline int ShownToPhysics(const GeneratorSettings& settings) {
-  return settings.observed > 1 ? settings.observed : 0;
-}
 
 MaybeError WriteGenerator(const std::string& folder, const TrainedNetworks& trained);
 
@@ -177,41 +172,32 @@ inline constexpr int kPushControls = 4;
 
 ParticleLayout PushLayout(const std::vector<std::string>& joint_names);
 
-// One person; pushes of others are not seen.
-struct PushedParticles {
-  ObservedMotion motion;                             // all frames of the recording
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // m, world
-};
-PushedParticles ParticlesOf(const BodyRecording& recording, int person);
+// One person, all frames of the recording; pushes of others are not seen.
+ObservedMotion ParticlesOf(const BodyRecording& recording, int person);
+// Their body again, where the particles stand.
+BodyMotion BodyFromParticles(const Trajectories& motion, const Eigen::Vector2f& place);
 
-// Where a prediction has everybody's hip, in the coordinates of their particles.
-using GroupHips = std::vector<Eigen::Matrix3Xf>;
-GroupHips PendulumHips(const BodyRecording& recording, const Prediction& prediction);
-
-// What physics predict that see as many frames as the generator. Errors: a model that leaves its
-// domain.
+// The prediction of physics that see as many frames as the generator. Errors: a model that leaves
+// its domain.
 Result<Prediction> PredictBeside(const GeneratorSettings& settings, const IdentifiedModel& physics,
                                  const BodyRecording& recording, int frames = 0);
 
-// Everybody of a recording, for generators whose people see each other; hips: or empty.
-std::vector<ObservedMotion> GroupOf(const BodyRecording& recording, const GroupHips& hips = {});
+// Everybody of a recording, for generators whose people see each other.
+std::vector<ObservedMotion> GroupOf(const BodyRecording& recording);
 
 // The kinds of a scene's pushes, each once.
 std::vector<PushKind> PushKindsOf(const Scene& scene);
 // Says which pushes are of a kind that the generator has not learned from; empty: none.
 std::string OtherPushKinds(const GeneratorSettings& settings, const Scene& scene);
 
-// Whether frames of dt seconds are those the generator was trained on.
-bool AtRateOf(const GeneratorSettings& settings, double dt);
-
-BodyMotion BodyFromParticles(const Trajectories& motion, const Eigen::Vector3d& origin);
-
-// What a generator makes of a recording whose first `observed` frames it is shown: those, then its
-// forecast to the recording's end, or for `frames` frames in all. Errors: a recording that is not
-// at the generator's rate, or too short.
+// A generator's bodies of a recording whose first `observed` frames it is shown: those, then its
+// forecast to the recording's end, or for `frames` frames in all. physics: predict the hips that
+// the forecast may be blended with; null: none. Errors: a recording that is not at the generator's
+// rate, or too short; those of PredictBeside.
 Result<std::vector<BodyMotion>> GenerateBodies(const GeneratorSettings& settings,
                                                const MotionGenerator& generator,
                                                const BodyRecording& recording,
-                                               const GroupHips& hips = {}, int frames = 0);
+                                               const IdentifiedModel* physics = nullptr,
+                                               int frames = 0);
 
 }  // namespace pushid

@@ -15,11 +15,6 @@ namespace {
 
 constexpr double kRidgePenalty = 1e-2;  // m^2
 
-void AddTo(ContentHash* hash, const Eigen::MatrixXf& values) {
-  hash->Add({reinterpret_cast<const char*>(values.data()),
-             static_cast<size_t>(values.size()) * sizeof(float)});
-}
-
 // The key of one seed's training: its data and its options.
 std::string KeyOf(const GeneratorSamples& samples, const GeneratorTrainingOptions& options,
                   const std::string& network, const TrainerOptions& of_seed) {
@@ -57,9 +52,9 @@ MaybeError TrainSeeds(const char* name, const Options& of_kind, int seeds,
     Options of_seed = of_kind;
     of_seed.seed = options.seed + static_cast<uint64_t>(index);
     of_seed.num_threads = options.num_threads;
-    OfKind trainer(data..., of_seed);
-    if (MaybeError error = run(&trainer, KeyOf(samples, options, name, of_seed))) return error;
-    members->push_back(trainer.Network());
+    const auto trainer = OfKind::Make(data..., of_seed);
+    if (MaybeError error = run(trainer.get(), KeyOf(samples, options, name, of_seed))) return error;
+    members->push_back(trainer->Network());
   }
   return std::nullopt;
 }
@@ -205,93 +200,59 @@ namespace {
 
 constexpr int kShown = 20;  // frames, of generator_shown_20
 
-// What one fold scores its recordings by.
-class FoldJudge {
- public:
-  FoldJudge(const GeneratorValidationOptions& validation, const TrainedNetworks& trained,
-            const std::optional<IdentifiedModel>& model)
-      : validation_(validation), trained_(trained), model_(model) {}
-
-  MaybeError Score(const BodyRecording& recording, std::map<std::string, BodyScore>* scores) const {
-    GeneratorChanges changes = validation_.changes;
-    changes.diffusion.sampled = std::make_shared<std::vector<Trajectories>>();
-    if (MaybeError error = Add("generator", recording, validation_.observed, changes, scores)) {
-      return error;
-    }
-    GeneratorChanges alone = changes;
-    alone.diffusion.blend = 0.0;
-    MaybeError error;
-    if (changes.diffusion.blend > 0.0) {
-      error = Add("generator_unblended", recording, validation_.observed, alone, scores);
-    }
-    alone.diffusion.sampled.reset();
-    if (!error && validation_.observed != kShown && recording.num_frames() > kShown) {
-      error = Add("generator_shown_20", recording, kShown, alone, scores);
-    }
-    const int observed = validation_.observed, seen = SeenByBaselines(observed);
-    (*scores)["static"] = ScoreBodies(recording, StaticBodies(recording, seen), observed);
-    (*scores)["constant_velocity"] =
-        ScoreBodies(recording, ConstantVelocityBodies(recording, seen), observed);
-    return error;
-  }
-
- private:
-  // Where the fold's physics have everybody; nothing without physics.
-  Result<GroupHips> Hips(const BodyRecording& recording, const GeneratorSettings& settings,
-                         std::map<std::string, BodyScore>* scores) const {
-    if (!model_) return GroupHips();
-    const Result<Prediction> predicted = PredictBeside(settings, *model_, recording);
-    if (!predicted.ok()) return predicted.error();
-    const Prediction& prediction = predicted.value();
-    scores->emplace(
-        "rigid",
-        ScoreBodies(recording, RigidRestoration().Restore(PredictedPeople(recording, prediction)),
-                    settings.observed));  // of the first call: as observed
-    return PendulumHips(recording, prediction);
-  }
-
-  MaybeError Add(const std::string& name, const BodyRecording& recording, int observed,
-                 const GeneratorChanges& changes, std::map<std::string, BodyScore>* scores) const {
-    GeneratorSettings settings = trained_.settings;
-    settings.observed = observed;
-    GroupHips hips;
-    if (changes.diffusion.blend > 0.0) {
-      Result<GroupHips> predicted = Hips(recording, settings, scores);
+// model: the fold's physics, which predict the hips that forecasts are blended with.
+Result<BodyScores> ScoreGenerator(const TrainedNetworks& trained,
+                                  const std::optional<IdentifiedModel>& model,
+                                  const GeneratorValidationOptions& validation,
+                                  const BodyRecording& recording) {
+  BodyScores scores;
+  const auto forecast = [&](int shown,
+                            const GeneratorChanges& changes) -> Result<std::vector<BodyMotion>> {
+    GeneratorSettings settings = trained.settings;
+    settings.observed = shown;
+    const bool blended = changes.diffusion.blend > 0.0 && model;
+    if (blended) {
+      const Result<Prediction> predicted = PredictBeside(settings, *model, recording);
       if (!predicted.ok()) return predicted.error();
-      hips = std::move(predicted.value());
+      const auto people = PredictedPeople(recording, predicted.value());
+      scores["rigid"] = {ScoreBodies(recording, RigidRestoration().Restore(people), shown)};
     }
-    const auto bodies = GenerateBodies(settings, *trained_.Make(changes), recording, hips);
-    if (!bodies.ok()) return bodies.error();
-    (*scores)[name] = ScoreBodies(recording, bodies.value(), observed);
-    if (name != "generator" || observed == 1) return std::nullopt;
-    (*scores)["generator_all_frames"] = ScoreBodies(recording, bodies.value());
-    return std::nullopt;
+    return GenerateBodies(settings, *trained.Make(changes), recording, blended ? &*model : nullptr);
+  };
+  const int observed = validation.observed;
+  GeneratorChanges changes = validation.changes;
+  changes.diffusion.sampled = std::make_shared<std::vector<Trajectories>>();
+  const auto bodies = forecast(observed, changes);
+  if (!bodies.ok()) return bodies.error();
+  ScoreForecast(recording, bodies.value(), observed, &scores);
+  if (changes.diffusion.blend > 0.0) {
+    changes.diffusion.blend = 0.0;
+    const auto unblended = forecast(observed, changes);
+    if (!unblended.ok()) return unblended.error();
+    scores["generator_unblended"] = {ScoreBodies(recording, unblended.value(), observed)};
   }
-
-  const GeneratorValidationOptions& validation_;
-  const TrainedNetworks& trained_;
-  const std::optional<IdentifiedModel>& model_;
-};
+  if (observed == kShown || recording.num_frames() <= kShown) return scores;
+  changes.diffusion.sampled.reset();
+  const auto shown = forecast(kShown, changes);
+  if (!shown.ok()) return shown.error();
+  scores["generator_shown_20"] = {ScoreBodies(recording, shown.value(), kShown)};
+  return scores;
+}
 
 }  // namespace
 
-Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
-                                                   const GeneratorTrainingOptions& options,
-                                                   const GeneratorValidationOptions& validation,
-                                                   const RunProgress& progress) {
+Result<BodyValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
+                                              const GeneratorTrainingOptions& options,
+                                              const GeneratorValidationOptions& validation,
+                                              const RunProgress& progress) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
-  const auto made = MakeFolds(pendulums, validation.scheme, validation.folds, 1, options.seed);
-  if (!made.ok()) return made.error();
-  const int total = static_cast<int>(recordings.size());
-  GeneratorValidation result;
-  std::vector<std::map<std::string, BodyScore>> by_recording(total);
-  for (const Fold& fold : made.value()) {
-    const std::vector<int> among = Others(fold.held_out, total);
+  const FoldTrainer train = [&](const std::vector<int>& among, const RunProgress& told,
+                                double* seconds) -> Result<FoldScorer> {
     std::optional<IdentifiedModel> model;
     if (validation.physics) {
-      if (progress) progress(fold.name + ", physics", 0.0);
+      told("physics", 0.0);
       Result<FittedFolds> fitted = FitFolds(pendulums, among, *validation.physics, 0, options.seed);
-      if (!fitted.ok()) return Error{fold.name + ": " + fitted.error().message};
+      if (!fitted.ok()) return fitted.error();
       model = std::move(fitted.value().model);
     }
     const GeneratorSamples samples = SamplesOf(recordings, among, {}, validation.observed);
@@ -300,18 +261,16 @@ Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecordi
     const double before = Now();
     const Result<TrainedGenerator> trained =
         TrainGenerator(samples, of_fold, [&](const TrainingPoint& point, double done) {
-          if (!progress) return;
-          progress(fold.name + ", " + point.stage + ", step " + std::to_string(point.epoch), done);
+          told(point.stage + ", step " + std::to_string(point.epoch), done);
         });
     if (!trained.ok()) return trained.error();
-    result.training_seconds.push_back(Now() - before);
-    const FoldJudge judge(validation, trained.value().networks, model);
-    for (int i : fold.held_out) {
-      if (MaybeError error = judge.Score(recordings[i], &by_recording[i])) return *error;
-    }
-  }
-  result.evaluation = SummarizeAll(recordings, by_recording);
-  return result;
+    *seconds = Now() - before;
+    return FoldScorer(
+        [&validation, networks = trained.value().networks, model](const BodyRecording& recording) {
+          return ScoreGenerator(networks, model, validation, recording);
+        });
+  };
+  return CrossValidateBodies(recordings, validation, train, progress);
 }
 
 }  // namespace pushid

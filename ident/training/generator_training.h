@@ -69,24 +69,17 @@ Result<TrainedGenerator> TrainGenerator(const GeneratorSamples& samples,
 // All but generator_all_frames and generator_shown_20 count the frames that the generator was not
 // shown; generator_shown_20 counts those after its 20.
 
-struct GeneratorValidationOptions {
+struct GeneratorValidationOptions : FoldChoice {
   int observed = 20;  // frames that the generator is shown; 1: the first pose, and the push
-  FoldScheme scheme = FoldScheme::kStratified;
-  int folds = 0;
   std::optional<FitOptions> physics;  // of the pendulum, fitted in every fold too
   GeneratorChanges changes;           // as in its use
 };
 
-struct GeneratorValidation {
-  BodyEvaluation evaluation;  // every recording as forecast by the fold that did not see it
-  std::vector<double> training_seconds;
-};
-
-// Errors: folds that cannot be made, recordings that are too short, a fold whose pendulum finds no
-// optimum.
-Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
-                                                   const GeneratorTrainingOptions& options,
-                                                   const GeneratorValidationOptions& validation,
-                                                   const RunProgress& progress = nullptr);
+// Errors: those of CrossValidateBodies; recordings that are too short, a fold whose pendulum finds
+// no optimum.
+Result<BodyValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
+                                              const GeneratorTrainingOptions& options,
+                                              const GeneratorValidationOptions& validation,
+                                              const RunProgress& progress = nullptr);
 
 }  // namespace pushid

@@ -1,14 +1,14 @@
-// ident: trainings run, with checkpoints: key, curve and state, each with its length in front.
+// ident: trainings of restorations, and what all trainings share: checkpoints and curves.
 #include "ident/training/restoration_training.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/chart.h"
 #include "ident/fit/fit.h"
@@ -23,55 +23,36 @@ namespace {
 
 constexpr double kCheckpointSeconds = 20.0;  // between two
 
-void Append(const std::string& part, std::string* bytes) {
-  const uint64_t size = part.size();
-  bytes->append(reinterpret_cast<const char*>(&size), sizeof size);
-  *bytes += part;
-}
-
-bool Take(const std::string& bytes, size_t* at, std::string* part) {
-  uint64_t size = 0;
-  if (bytes.size() < *at + sizeof size) return false;
-  std::memcpy(&size, bytes.data() + *at, sizeof size);
-  *at += sizeof size;
-  if (bytes.size() - *at < size) return false;
-  *part = bytes.substr(*at, size);
-  *at += size;
-  return true;
-}
-
-// The state and the curve so far; false where there is no checkpoint with this key.
-bool Load(const std::string& path, const std::string& wanted_key, std::string* state,
-          std::vector<TrainingPoint>* curve) {
-  std::error_code ignored;
-  if (path.empty() || !std::filesystem::exists(path, ignored)) return false;
+// Goes on from the checkpoint of this key; false where there is none.
+bool Resume(const std::string& path, const std::string& key, Trainer* trainer,
+            std::vector<TrainingPoint>* curve) {
   const Result<std::string> bytes = ReadWholeFile(path);
   if (!bytes.ok()) return false;
-  size_t at = 0;
-  std::string key, points;
-  if (!Take(bytes.value(), &at, &key) || key != wanted_key) return false;
-  if (!Take(bytes.value(), &at, &points) || !Take(bytes.value(), &at, state)) return false;
-  const auto json = nlohmann::json::parse(points, nullptr, false);
-  if (!json.is_array()) return false;
-  for (const auto& p : json) {
-    if (!p.is_array() || p.size() != 4) return false;
-    curve->push_back(
-        {p[0].get<int>(), p[1].get<double>(), p[2].get<double>(), p[3].get<std::string>()});
+  try {
+    const auto json = nlohmann::json::from_cbor(bytes.value());
+    if (json.at("key") != key) return false;
+    std::vector<TrainingPoint> points;
+    for (const auto& p : json.at("curve")) {
+      points.push_back({p.at(0), p.at(1), p.at(2), p.at(3)});
+    }
+    const std::vector<std::uint8_t>& state = json.at("state").get_binary();
+    if (!trainer->Resume({state.begin(), state.end()})) return false;
+    *curve = std::move(points);
+    return true;
+  } catch (const nlohmann::json::exception&) {
+    return false;
   }
-  return true;
 }
 
 MaybeError Save(const std::string& path, const std::string& key, const std::string& state,
                 const std::vector<TrainingPoint>& curve) {
-  nlohmann::json points = nlohmann::json::array();
+  nlohmann::json json = {{"key", key}, {"curve", nlohmann::json::array()}};
   for (const TrainingPoint& p : curve) {
-    points.push_back({p.epoch, p.training_loss, p.validation_loss, p.stage});
+    json["curve"].push_back({p.epoch, p.training_loss, p.validation_loss, p.stage});
   }
-  std::string bytes;
-  Append(key, &bytes);
-  Append(points.dump(), &bytes);
-  Append(state, &bytes);
-  return WriteFileAtomically(path, bytes);
+  json["state"] = nlohmann::json::binary({state.begin(), state.end()});
+  const std::vector<std::uint8_t> bytes = nlohmann::json::to_cbor(json);
+  return WriteFileAtomically(path, std::string(bytes.begin(), bytes.end()));
 }
 
 constexpr double kCurveWidth = 700;  // pixels
@@ -113,12 +94,9 @@ void AddPanels(const std::vector<TrainingPoint>& stage, std::vector<Chart>* pane
 MaybeError RunToEnd(Trainer* trainer, const std::string& key, const CheckpointOptions& options,
                     const std::function<void(TrainingPoint* point)>& told, TrainingCourse* course) {
   double last = Now() - kCheckpointSeconds;  // the first is due at once
-  std::string state;
   std::vector<TrainingPoint> curve;
-  if (Load(options.checkpoint, key, &state, &curve) && trainer->Resume(state)) {
-    course->resumed = true;
-  } else {
-    curve.clear();
+  if (!options.checkpoint.empty()) {
+    course->resumed |= Resume(options.checkpoint, key, trainer, &curve);
   }
   while (!trainer->Done()) {
     curve.push_back(trainer->RunRound());
@@ -150,32 +128,32 @@ std::string TrainingCurveSvg(const std::vector<TrainingPoint>& curve, const std:
 
 namespace {
 
-// A hash of everything the samples hold.
-std::string KeyOfSamples(const std::vector<RestorationSample>& samples) {
+// The key of a training: its samples and its options.
+std::string KeyOf(const std::vector<RestorationSample>& training,
+                  const std::vector<RestorationSample>& held,
+                  const RestorationTrainingOptions& options) {
   ContentHash hash;
-  const auto add = [&hash](const auto& values) {
-    hash.Add({reinterpret_cast<const char*>(values.data()),
-              static_cast<size_t>(values.size()) * sizeof(double)});
-  };
-  for (const RestorationSample& sample : samples) {
-    add(sample.person().first_pose);
-    for (const auto& q : sample.person().q) add(q);
-    for (const auto& lengths : sample.person().lengths) add(lengths);
-    add(sample.person().push.velocity);
-    add(sample.person().push.place);
-    for (const Pose& pose : sample.motion) add(pose);
+  for (const auto* samples : {&training, &held}) {
+    for (const RestorationSample& sample : *samples) {
+      const RestorationInput& person = sample.person();
+      AddTo(&hash, person.first_pose);
+      for (const auto& q : person.q) AddTo(&hash, q);
+      for (const auto& lengths : person.lengths) AddTo(&hash, lengths);
+      AddTo(&hash, person.push.velocity);
+      AddTo(&hash, person.push.place);
+      for (const Pose& pose : sample.motion) AddTo(&hash, pose);
+    }
   }
-  return hash.Hex();
+  return Joined({"3", NameOf(options.kind), NameOf(options.coordinates), NameOf(options.view),
+                 options.halves ? "halves" : "whole", NameOf(options.training),
+                 std::to_string(options.effort), std::to_string(options.seed),
+                 std::to_string(training.size()), hash.Hex()},
+                " ");
 }
 
-// What a training depends on.
-std::string KeyOfTraining(const std::vector<RestorationSample>& training,
-                          const std::vector<RestorationSample>& held,
-                          const RestorationTrainingOptions& options) {
-  return "2 " + NameOf(options.kind) + " " + NameOf(options.coordinates) + " " +
-         NameOf(options.view) + (options.halves ? " halves " : " whole ") +
-         NameOf(options.training) + " " + std::to_string(options.effort) + " " +
-         std::to_string(options.seed) + " " + KeyOfSamples(training) + KeyOfSamples(held);
+// `epochs` times the options' effort.
+int EpochsOf(int epochs, const RestorationTrainingOptions& options) {
+  return std::max(1, static_cast<int>(std::lround(epochs * options.effort)));
 }
 
 // All frames of all samples side by side; scaled with `scaling`, which is set first if it is empty.
@@ -208,139 +186,89 @@ std::vector<CvaeSequence> Sequences(const std::vector<RestorationSample>& sample
     const RestorationInput person = Resampled(sample.person(), 1.0 / kCvaeRate);
     const BodyMotion motion =
         Resampled(sample.motion, sample.person().dt, person.dt, static_cast<int>(person.q.size()));
-    BodyFrames frames = FramesOf(person, motion, layout);
-    sequences.push_back(
-        {std::move(frames.lower), std::move(frames.upper), PendulumFrames(person, layout)});
+    sequences.push_back({FramesOf(person, motion, layout), PendulumFrames(person, layout)});
   }
   return sequences;
 }
 
-Scaling ScalingOfAll(const std::vector<CvaeSequence>& sequences,
-                     Eigen::MatrixXf CvaeSequence::*part) {
-  Eigen::Index columns = 0, at = 0;
-  for (const CvaeSequence& s : sequences) columns += (s.*part).cols();
-  Eigen::MatrixXf all((sequences.front().*part).rows(), columns);
-  for (const CvaeSequence& s : sequences) {
-    all.middleCols(at, (s.*part).cols()) = s.*part;
-    at += (s.*part).cols();
+// Scales the sequences with the scalings, which are set first where they are empty.
+void Scale(std::vector<CvaeSequence>* sequences, CvaeWeights* scalings) {
+  const auto scale = [&](Scaling* scaling, auto part) {
+    if (scaling->mean.size() == 0) {
+      Eigen::Index columns = 0, at = 0;
+      for (CvaeSequence& s : *sequences) columns += part(s).cols();
+      Eigen::MatrixXf all(part(sequences->front()).rows(), columns);
+      for (CvaeSequence& s : *sequences) {
+        all.middleCols(at, part(s).cols()) = part(s);
+        at += part(s).cols();
+      }
+      *scaling = ScalingOf(all);
+    }
+    for (CvaeSequence& s : *sequences) part(s) = scaling->Scaled(part(s));
+  };
+  for (int half = 0; half < scalings->layout.num_halves(); ++half) {
+    scale(&scalings->halves[half].scaling,
+          [half](CvaeSequence& s) -> Eigen::MatrixXf& { return s.body[half]; });
   }
-  return ScalingOf(all);
-}
-
-void Scale(const CvaeWeights& scalings, std::vector<CvaeSequence>* sequences) {
-  for (CvaeSequence& s : *sequences) {
-    s.lower = scalings.lower.Scaled(s.lower);
-    if (scalings.layout.halves) s.upper = scalings.upper.Scaled(s.upper);
-    if (scalings.layout.pendulum) s.pendulum = scalings.pendulum.Scaled(s.pendulum);
-  }
+  if (!scalings->layout.pendulum) return;
+  scale(&scalings->pendulum, [](CvaeSequence& s) -> Eigen::MatrixXf& { return s.pendulum; });
 }
 
 // Beside the two halves' autoencoders in LDP's release; the paper's Table 3 has totals only.
 std::vector<NetworkSize> SizesOf(const CvaeTrainer& trainer, const CvaeLayout& layout) {
   constexpr int64_t kReleased[4] = {865536, 0, 1097904, 0};
+  const std::array<int64_t, 4> parameters = trainer.NumParameters();
   std::vector<NetworkSize> sizes;
-  for (size_t i = 0; i < trainer.NumParameters().size(); ++i) {
-    const int64_t parameters = trainer.NumParameters()[i];
-    if (parameters == 0) continue;
-    sizes.push_back({kCvaeStageNames[i], parameters, layout.halves ? kReleased[i] : 0});
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i] == 0) continue;
+    sizes.push_back({kCvaeStageNames[i], parameters[i], layout.halves ? kReleased[i] : 0});
   }
   return sizes;
 }
 
 }  // namespace
 
-Result<RestorationTraining> TrainWindow(const std::vector<RestorationSample>& training,
-                                        const std::vector<RestorationSample>& held,
-                                        const RestorationTrainingOptions& options) {
+RestorationTraining TrainWindow(const std::vector<RestorationSample>& training,
+                                const std::vector<RestorationSample>& held,
+                                const RestorationTrainingOptions& options) {
   Scaling inputs;
   const RegressionSamples learnt = WindowSamples(training, options.view, &inputs);
   const RegressionSamples judged = WindowSamples(held, options.view, &inputs);
   RegressionOptions regression;
   regression.epochs = EpochsOf(regression.epochs, options);
   static_cast<TrainerOptions&>(regression) = options;
-  const auto trainer = std::make_shared<RegressionTrainer>(learnt, judged, regression);
-  const auto finish = [trainer, inputs, view = options.view](RestorationFile* file) {
-    (*file->settings)[kViewKey] = NameOf(view);
-    AddTensors("inputs", inputs, &file->tensors);
-    AddTensors("network", trainer->Best(), &file->tensors);
+  const std::shared_ptr<TrainerOf<DenseNetwork>> trainer =
+      MakeRegressionTrainer(learnt, judged, regression);
+  const auto finish = [trainer, inputs, view = options.view](TensorFolder* content) {
+    (*content->settings)[kViewKey] = NameOf(view);
+    AddTensors("", WindowWeights{view, inputs, trainer->Network()}, &content->tensors);
   };
-  return RestorationTraining{trainer, finish};
+  return {trainer, finish};
 }
 
-Result<RestorationTraining> TrainCvae(const std::vector<RestorationSample>& training,
-                                      const std::vector<RestorationSample>& held,
-                                      const RestorationTrainingOptions& options) {
+RestorationTraining TrainCvae(const std::vector<RestorationSample>& training,
+                              const std::vector<RestorationSample>& held,
+                              const RestorationTrainingOptions& options) {
   CvaeWeights scalings;
   scalings.layout = {options.coordinates, options.view == RestorationView::kPendulum,
                      options.halves};
   std::vector<CvaeSequence> learnt = Sequences(training, scalings.layout);
   std::vector<CvaeSequence> judged = Sequences(held, scalings.layout);
-  scalings.lower = ScalingOfAll(learnt, &CvaeSequence::lower);
-  if (scalings.layout.halves) scalings.upper = ScalingOfAll(learnt, &CvaeSequence::upper);
-  if (scalings.layout.pendulum) scalings.pendulum = ScalingOfAll(learnt, &CvaeSequence::pendulum);
-  Scale(scalings, &learnt);
-  Scale(scalings, &judged);
+  Scale(&learnt, &scalings);
+  Scale(&judged, &scalings);
   CvaeOptions cvae;
   for (int& steps : cvae.steps) steps = EpochsOf(steps, options);
   cvae.training = options.training;
   static_cast<TrainerOptions&>(cvae) = options;
-  const auto trainer =
-      std::make_shared<CvaeTrainer>(std::move(learnt), std::move(judged), scalings, cvae);
-  const auto finish = [trainer, options](RestorationFile* file) {
-    file->tensors = ToTensors(trainer->Best());
-    *file->settings = {{kViewKey, NameOf(options.view)},
-                       {kCvaeCoordinatesKey, NameOf(options.coordinates)},
-                       {kCvaeHalvesKey, options.halves},
-                       {kCvaeTrainingKey, NameOf(options.training)}};
+  const std::shared_ptr<CvaeTrainer> trainer = CvaeTrainer::Make(learnt, judged, scalings, cvae);
+  const auto finish = [trainer, options](TensorFolder* content) {
+    AddTensors("", trainer->Network(), &content->tensors);
+    *content->settings = {{kViewKey, NameOf(options.view)},
+                          {kCvaeCoordinatesKey, NameOf(options.coordinates)},
+                          {kCvaeHalvesKey, options.halves},
+                          {kCvaeTrainingKey, NameOf(options.training)}};
   };
-  return RestorationTraining{trainer, finish, SizesOf(*trainer, scalings.layout)};
-}
-
-nlohmann::ordered_json SizesJson(const std::vector<NetworkSize>& sizes) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  for (const NetworkSize& size : sizes) json[size.name] = size.parameters;
-  return json;
-}
-
-std::string SizesText(const std::vector<NetworkSize>& sizes) {
-  std::string text;
-  for (const NetworkSize& size : sizes) {
-    text += size.name + ": " + std::to_string(size.parameters) + " parameters";
-    if (size.released > 0) text += " (release: " + std::to_string(size.released) + ")";
-    text += "\n";
-  }
-  return text;
-}
-
-int EpochsOf(int epochs, const RestorationTrainingOptions& options) {
-  return std::max(1, static_cast<int>(std::lround(epochs * options.effort)));
-}
-
-Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>& training,
-                                            const std::vector<RestorationSample>& held,
-                                            const RestorationTrainingOptions& options,
-                                            const TrainingProgress& progress) {
-  for (const KindTrainer& row : kRestorationTrainers) {
-    if (row.kind != options.kind) continue;
-    const Result<RestorationTraining> of_kind = row.train(training, held, options);
-    if (!of_kind.ok()) return of_kind.error();
-    Trainer* trainer = of_kind.value().trainer.get();
-    TrainedRestoration trained;
-    trained.sizes = of_kind.value().sizes;
-    const auto told = [&](TrainingPoint* point) {
-      if (progress) progress(*point, trainer->ShareDone());
-    };
-    if (MaybeError error =
-            RunToEnd(trainer, KeyOfTraining(training, held, options), options, told, &trained)) {
-      return *error;
-    }
-    RemoveCheckpoint(options.checkpoint);
-    trained.file.kind = options.kind;
-    of_kind.value().finish(&trained.file);
-    return trained;
-  }
-  return Error{"--kind is '" + NameOf(options.kind) + "', which is not trained; it must be " +
-               TrainedRestorationKinds()};
+  return {trainer, finish, SizesOf(*trainer, scalings.layout)};
 }
 
 Result<FittedFolds> FitFolds(const std::vector<PendulumRecording>& recordings,
@@ -370,6 +298,24 @@ Result<FittedFolds> FitFolds(const std::vector<PendulumRecording>& recordings,
   return result;
 }
 
+void SplitHeldOut(const std::vector<PendulumRecording>& recordings, const std::vector<int>& among,
+                  double share, uint64_t seed, std::vector<int>* training, std::vector<int>* held) {
+  const int total = static_cast<int>(among.size());
+  const int folds = std::clamp(static_cast<int>(std::lround(1.0 / share)), 2, std::max(2, total));
+  const auto made = MakeFolds(Picked(recordings, among), FoldScheme::kStratified, folds, 1, seed);
+  *held = made.ok() ? made.value()[0].held_out : std::vector<int>();
+  *training = Others(*held, total);
+}
+
+namespace {
+
+constexpr int kInnerFolds = 4;        // of the out-of-fold predictions
+constexpr double kStopsEarly = 0.15;  // share of the recordings that stop the training early
+constexpr int kScoredDraws = 3;       // of the latent variable, whose scores are averaged
+
+// Samples of every person of the recordings: the true pendulum, the predicted one (if the path is
+// not empty), and both in the mirror. predictions: in the order of `among`, or none. rod_moves: as
+// for RecordedPeople.
 std::vector<RestorationSample> MakeSamples(const std::vector<BodyRecording>& recordings,
                                            const std::vector<int>& among,
                                            const std::vector<Prediction>& predictions,
@@ -398,58 +344,33 @@ std::vector<RestorationSample> MakeSamples(const std::vector<BodyRecording>& rec
   return samples;
 }
 
-void SplitHeldOut(const std::vector<PendulumRecording>& recordings, const std::vector<int>& among,
-                  double share, uint64_t seed, std::vector<int>* training, std::vector<int>* held) {
-  const int total = static_cast<int>(among.size());
-  const int folds = std::clamp(static_cast<int>(std::lround(1.0 / share)), 2, std::max(2, total));
-  const auto made = MakeFolds(Picked(recordings, among), FoldScheme::kStratified, folds, 1, seed);
-  *held = made.ok() ? made.value()[0].held_out : std::vector<int>();
-  *training = Others(*held, total);
-}
-
-namespace {
-
-constexpr int kInnerFolds = 4;        // of the out-of-fold predictions
-constexpr double kStopsEarly = 0.15;  // share of the recordings that stop the training early
-constexpr int kScoredDraws = 3;       // of the latent variable, whose scores are averaged
-
-// Metric by metric; a failure is a failure of all.
-BodyScore MeanOfDraws(const std::vector<BodyScore>& scores) {
-  BodyScore mean = scores.front();
-  mean.value.setZero();
-  for (const BodyScore& score : scores) {
-    mean.value += score.value / static_cast<double>(scores.size());
-  }
-  return mean;
-}
-
-// The restoration of the predicted pendulums alone, as restoration_drawn.
-void ScoreDrawn(const IdentifiedModel& model, const Restoration& restoration,
-                const RestorationRunOptions& options, const BodyRecording& recording,
-                BodyScores* scores) {
-  BodyScores of_draw;
-  ScoreRestoration(model, restoration, options.postprocess, recording, &of_draw, options.observed);
-  (*scores)["restoration_drawn"].push_back(of_draw["restoration"].front());
-}
-
-// A restoration beside its baselines; of a cvae also with a drawn latent variable.
-Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedModel& model,
+// A restoration beside its baselines; of a cvae also, as restoration_drawn, the mean over drawn
+// latent variables.
+Result<BodyScores> ScoreTrained(const TensorFolder& content, const IdentifiedModel& model,
                                 const RestorationRunOptions& options,
                                 const BodyRecording& recording) {
-  BodyScores scores;
-  const auto restoration = MakeRestoration(file, "");
+  const auto restoration = MakeRestoration(content, "");
   if (!restoration.ok()) return restoration.error();
-  ScoreRestoration(model, *restoration.value(), options.postprocess, recording, &scores,
-                   options.observed);
-  if (file.kind != RestorationKind::kCvae || options.training.view == RestorationView::kPose) {
+  const auto score = [&] {
+    BodyScores scores;
+    ScoreRestoration(model, *restoration.value(), options.postprocess, recording, &scores,
+                     options.observed);
+    return scores;
+  };
+  BodyScores scores = score();
+  const RestorationTrainingOptions& training = options.training;
+  if (training.kind != RestorationKind::kCvae || training.view == RestorationView::kPose) {
     return scores;
   }
+  BodyScore mean;
   for (int k = 0; k < kScoredDraws; ++k) {
-    const LatentChoice drawn = {CvaeLatent::kDraw, options.training.seed + k};
+    const LatentChoice drawn = {CvaeLatent::kDraw, training.seed + k};
     if (MaybeError error = ChooseLatent(drawn, restoration.value().get())) return *error;
-    ScoreDrawn(model, *restoration.value(), options, recording, &scores);
+    const BodyScore one = score()["restoration"].front();
+    if (k == 0) mean = one, mean.value.setZero();
+    mean.value += one.value / static_cast<double>(kScoredDraws);
   }
-  scores["restoration_drawn"] = {MeanOfDraws(scores["restoration_drawn"])};
+  scores["restoration_drawn"] = {mean};
   return scores;
 }
 
@@ -492,13 +413,26 @@ Result<TrainedRestoration> TrainOn(const std::vector<BodyRecording>& recordings,
   }
   const auto held =
       MakeSamples(recordings, Picked(among, judged), Picked(predictions, judged), rod_moves, false);
-  return TrainRestoration(training, held, options.training,
-                          [&](const TrainingPoint& point, double done) {
-                            if (!progress) return;
-                            progress(point.stage + (point.stage.empty() ? "" : ", ") + "epoch " +
-                                         std::to_string(point.epoch),
-                                     done);
-                          });
+  const RestorationTrainingOptions& of_kind = options.training;
+  const RestorationTraining prepared =
+      kRestorationTrainers[static_cast<size_t>(of_kind.kind)](training, held, of_kind);
+  Trainer* trainer = prepared.trainer.get();
+  TrainedRestoration trained;
+  trained.sizes = prepared.sizes;
+  const auto told = [&](TrainingPoint* point) {
+    if (!progress) return;
+    progress(
+        point->stage + (point->stage.empty() ? "" : ", ") + "epoch " + std::to_string(point->epoch),
+        trainer->ShareDone());
+  };
+  if (MaybeError error =
+          RunToEnd(trainer, KeyOf(training, held, of_kind), of_kind, told, &trained)) {
+    return *error;
+  }
+  RemoveCheckpoint(of_kind.checkpoint);
+  trained.content.kind = NameOf(of_kind.kind);
+  prepared.finish(&trained.content);
+  return trained;
 }
 
 }  // namespace
@@ -517,51 +451,65 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
   return TrainOn(recordings, pendulums, among, predictions, options, progress);
 }
 
-Result<TrainedChain> TrainChain(const std::vector<BodyRecording>& recordings,
-                                const std::vector<int>& among, const RestorationRunOptions& options,
-                                const RunProgress& progress) {
-  const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
-  RestorationRunOptions alone = options;
-  alone.training.checkpoint.clear();  // one would be of one training, not of the whole
-  Result<FittedFolds> pendulum = FitPendulum(pendulums, among, alone, progress);
-  if (!pendulum.ok()) return pendulum.error();
-  Result<TrainedRestoration> trained =
-      TrainOn(recordings, pendulums, among, pendulum.value().predictions, alone, progress);
-  if (!trained.ok()) return trained.error();
-  return TrainedChain{std::move(pendulum.value().model), std::move(trained.value())};
-}
-
-Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& recordings,
-                                           const RestorationRunOptions& options, FoldScheme scheme,
-                                           int folds, const RunProgress& progress) {
-  const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
-  const int total = static_cast<int>(recordings.size());
-  const auto made = MakeFolds(pendulums, scheme, folds, 1, options.training.seed);
+Result<BodyValidation> CrossValidateBodies(const std::vector<BodyRecording>& recordings,
+                                           const FoldChoice& choice, const FoldTrainer& train,
+                                           const RunProgress& progress) {
+  const auto made = MakeFolds(PendulumsOf(recordings), choice.scheme, choice.folds, 1, choice.seed);
   if (!made.ok()) return made.error();
-  ChainValidation validation;
-  std::vector<std::map<std::string, BodyScore>> by_recording(total);
+  const int total = static_cast<int>(recordings.size());
+  BodyValidation validation;
+  std::vector<BodyScores> by_recording(total);
   for (const Fold& fold : made.value()) {
-    const std::vector<int> train = Others(fold.held_out, total);
     const auto told = [&](const std::string& step, double done) {
       if (progress) progress(fold.name + ", " + step, done);
     };
-    const double before = Now();
-    Result<TrainedChain> chain = TrainChain(recordings, train, options, told);
-    if (!chain.ok()) return Error{fold.name + ": " + chain.error().message};
-    validation.training_seconds.push_back(Now() - before);
-    const IdentifiedModel& model = chain.value().model;
-    if (options.observed > 0) {
-      if (MaybeError error = CheckLearnsFromFrames(model)) return *error;
+    double seconds = 0.0;
+    const Result<FoldScorer> score = train(Others(fold.held_out, total), told, &seconds);
+    if (!score.ok()) {
+      Error error = score.error();
+      error.message = fold.name + ": " + error.message;
+      return error;
     }
+    validation.training_seconds.push_back(seconds);
     for (int i : fold.held_out) {
-      const Result<BodyScores> scores =
-          ScoreTrained(chain.value().restoration.file, model, options, recordings[i]);
+      Result<BodyScores> scores = score.value()(recordings[i]);
       if (!scores.ok()) return scores.error();
-      for (const auto& [name, of_name] : scores.value()) by_recording[i][name] = of_name.front();
+      by_recording[i] = std::move(scores.value());
     }
   }
-  validation.evaluation = SummarizeAll(recordings, by_recording);
+  BodyScores all;
+  for (const BodyScores& scores : by_recording) {
+    for (const auto& [name, one] : scores) all[name].push_back(one.front());
+  }
+  validation.evaluation = SummarizeAll(recordings, all);
   return validation;
+}
+
+Result<BodyValidation> CrossValidateChain(const std::vector<BodyRecording>& recordings,
+                                          const RestorationRunOptions& options,
+                                          const FoldChoice& choice, const RunProgress& progress) {
+  const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
+  RestorationRunOptions of_fold = options;
+  of_fold.training.checkpoint.clear();  // one would be of one training, not of the whole
+  const FoldTrainer train = [&](const std::vector<int>& among, const RunProgress& told,
+                                double* seconds) -> Result<FoldScorer> {
+    const double before = Now();
+    Result<FittedFolds> pendulum = FitPendulum(pendulums, among, of_fold, told);
+    if (!pendulum.ok()) return pendulum.error();
+    Result<TrainedRestoration> trained =
+        TrainOn(recordings, pendulums, among, pendulum.value().predictions, of_fold, told);
+    if (!trained.ok()) return trained.error();
+    *seconds = Now() - before;
+    const auto model = std::make_shared<const IdentifiedModel>(std::move(pendulum.value().model));
+    if (options.observed > 0) {
+      if (MaybeError error = CheckLearnsFromFrames(*model)) return *error;
+    }
+    return FoldScorer(
+        [&, model, content = std::move(trained.value().content)](const BodyRecording& recording) {
+          return ScoreTrained(content, *model, options, recording);
+        });
+  };
+  return CrossValidateBodies(recordings, choice, train, progress);
 }
 
 }  // namespace pushid

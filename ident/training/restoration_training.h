@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/files/input_file.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/model/identified_model.h"
 #include "ident/problem/folds.h"
-#include "models/restoration/cvae_trainer.h"
 #include "models/restoration/restoration.h"
 #include "models/restoration/trainer.h"
 
@@ -27,7 +27,7 @@ struct CheckpointOptions {
   bool keep_finished = false;  // one more at the end: where further trainings follow
 };
 
-// How a training went.
+// The course of a training.
 struct TrainingCourse {
   std::vector<TrainingPoint> curve;
   bool resumed = false;
@@ -35,15 +35,22 @@ struct TrainingCourse {
 
 // Until the trainer is done, from a checkpoint of this key on if there is one; the last stays until
 // it is removed. A finished training needs none, so that one that cannot be written does not lose
-// its result. key: what the training depends on, data included. told: about every new point,
-// whose stage it may name. The points are added to the course. Errors: a checkpoint that cannot be
-// written.
+// its result. key: of everything that the training depends on, data included. told: about every new
+// point, whose stage it may name. The points are added to the course. Errors: a checkpoint that
+// cannot be written.
 MaybeError RunToEnd(Trainer* trainer, const std::string& key, const CheckpointOptions& options,
                     const std::function<void(TrainingPoint* point)>& told, TrainingCourse* course);
 
 void RemoveCheckpoint(const std::string& file);
 
-// In the file of what was trained.
+// Numbers for the key of a training.
+template <typename Numbers>
+void AddTo(ContentHash* hash, const Numbers& values) {
+  hash->Add({reinterpret_cast<const char*>(values.data()),
+             static_cast<size_t>(values.size()) * sizeof(*values.data())});
+}
+
+// The curve in the file of what was trained.
 inline nlohmann::ordered_json CurveJson(const std::vector<TrainingPoint>& curve) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const TrainingPoint& p : curve) {
@@ -90,14 +97,6 @@ struct RestorationSample {
   const RestorationInput& person() const { return (*people)[index]; }
 };
 
-// Samples of every person of the recordings: the true pendulum, the predicted one (if the path is
-// not empty), and both in the mirror. predictions: in the order of `among`, or none. rod_moves: as
-// for RecordedPeople.
-std::vector<RestorationSample> MakeSamples(const std::vector<BodyRecording>& recordings,
-                                           const std::vector<int>& among,
-                                           const std::vector<Prediction>& predictions,
-                                           bool rod_moves, bool mirrored);
-
 // Indices into `among`'s values: about `share` of the recordings, at least one, spread over
 // settings and strengths, to stop a training early by.
 void SplitHeldOut(const std::vector<PendulumRecording>& recordings, const std::vector<int>& among,
@@ -118,34 +117,19 @@ struct NetworkSize {
   int64_t parameters = 0, released = 0;
 };
 
-nlohmann::ordered_json SizesJson(const std::vector<NetworkSize>& sizes);
-// A line each: "lower autoencoder: 865536 parameters (release: 865536)".
-std::string SizesText(const std::vector<NetworkSize>& sizes);
-
 struct TrainedRestoration : TrainingCourse {
-  RestorationFile file;
+  TensorFolder content;
   std::vector<NetworkSize> sizes;
 };
 
-// What a kind's own function returns (ident/bodies/restoration_files.h).
+// A training that a kind's own function has prepared (ident/bodies/restoration_files.h).
 struct RestorationTraining {
   std::shared_ptr<Trainer> trainer;
-  std::function<void(RestorationFile* file)> finish;  // settings and tensors of the trained
+  std::function<void(TensorFolder* content)> finish;  // settings and tensors of the trained
   std::vector<NetworkSize> sizes{};
 };
-// `epochs` times the options' effort.
-int EpochsOf(int epochs, const RestorationTrainingOptions& options);
 
-// training, held: samples to learn from and to stop early by. Errors: a kind without training, a
-// checkpoint that cannot be written. A checkpoint of other data or options is not used.
-Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>& training,
-                                            const std::vector<RestorationSample>& held,
-                                            const RestorationTrainingOptions& options,
-                                            const TrainingProgress& progress = nullptr);
-
-// A whole training from recordings: pendulums predicted out of fold, samples, held-out
-// recordings; and its cross-validation, in which pendulum and restoration are fitted anew for
-// every fold, so that nothing has seen the recordings it is judged on.
+// A whole training from recordings: pendulums predicted out of fold, samples, held-out recordings.
 
 struct RestorationRunOptions {
   FitOptions fit;  // of the pendulum
@@ -156,10 +140,11 @@ struct RestorationRunOptions {
   std::vector<BodyRecording> more;
 };
 
-// A pendulum's model and the restoration of its bodies, learned from the same recordings.
-struct TrainedChain {
-  IdentifiedModel model;
-  TrainedRestoration restoration;
+// The choice of folds, and the seed of what is drawn.
+struct FoldChoice {
+  FoldScheme scheme = FoldScheme::kStratified;
+  int folds = 0;
+  uint64_t seed = 1;
 };
 
 // step: "pendulum 2/4", "window epoch 12"; done: share of this step.
@@ -171,22 +156,30 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
                                                const RestorationRunOptions& options,
                                                const RunProgress& progress = nullptr);
 
-// The pendulum fitted and a restoration trained on it. It keeps no checkpoint. Errors: those of
-// either; a fit that finds no optimum.
-Result<TrainedChain> TrainChain(const std::vector<BodyRecording>& recordings,
-                                const std::vector<int>& among, const RestorationRunOptions& options,
-                                const RunProgress& progress = nullptr);
+// Cross-validation of bodies: everything is trained anew for every fold, so that nothing has seen
+// the recordings it is judged on.
 
-struct ChainValidation {
-  // Every recording as predicted by the fold that did not see it. Of a cvae, restoration_drawn has
-  // the mean of the scores of three draws of the latent variable, and restoration is by its mean.
-  BodyEvaluation evaluation;
-  std::vector<double> training_seconds;  // of pendulum and restoration, by fold
+struct BodyValidation {
+  BodyEvaluation evaluation;  // every recording as predicted by the fold that did not see it
+  std::vector<double> training_seconds;  // by fold
 };
-// Errors: folds that cannot be made; a fold whose pendulum fit finds no optimum, or which cannot
-// learn from first frames where some are to be seen.
-Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& recordings,
-                                           const RestorationRunOptions& options, FoldScheme scheme,
-                                           int folds, const RunProgress& progress = nullptr);
+
+// Scores of one held-out recording, one of each name.
+using FoldScorer = std::function<Result<BodyScores>(const BodyRecording& recording)>;
+// Trains on the recordings with these indices.
+using FoldTrainer = std::function<Result<FoldScorer>(const std::vector<int>& among,
+                                                     const RunProgress& progress, double* seconds)>;
+// Errors: folds that cannot be made; those of the trainer and of its scorers.
+Result<BodyValidation> CrossValidateBodies(const std::vector<BodyRecording>& recordings,
+                                           const FoldChoice& choice, const FoldTrainer& train,
+                                           const RunProgress& progress);
+
+// The whole chain. Of a cvae, restoration_drawn has the mean of the scores of three draws of the
+// latent variable, and restoration is by its mean. Errors also: a fold whose pendulum fit finds no
+// optimum, or which cannot learn from first frames where some are to be seen.
+Result<BodyValidation> CrossValidateChain(const std::vector<BodyRecording>& recordings,
+                                          const RestorationRunOptions& options,
+                                          const FoldChoice& choice,
+                                          const RunProgress& progress = nullptr);
 
 }  // namespace pushid

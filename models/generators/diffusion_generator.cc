@@ -121,61 +121,11 @@ Eigen::MatrixXf Unfolded(const Eigen::MatrixXf& values, int frames, int stride) 
   return unfolded;
 }
 
-Eigen::MatrixXf EverySecond(const Eigen::MatrixXf& values) {
-  return values(Eigen::all, Eigen::seq(0, Eigen::last, 2));
-}
-
-Eigen::MatrixXf Below(const Eigen::MatrixXf& a, const Eigen::MatrixXf& b) {
-  Eigen::MatrixXf both(a.rows() + b.rows(), a.cols());
-  both << a, b;
-  return both;
-}
-
 Eigen::MatrixXf Perceptron(const DenseLayer& first, const DenseLayer& second,
                            const Eigen::MatrixXf& values) {
   Eigen::MatrixXf hidden = Applied(first, values);
   ApplySilu(&hidden);
   return Applied(second, hidden);
-}
-
-int StrideOf(int block) { return block < kDiffusionLevels ? 2 : 1; }
-
-void ListTensors(const std::string& name, DiffusionNetwork* network, TensorFields* fields) {
-  const DiffusionStructure& structure = network->structure;
-  fields->Positive(name + ".scales", kBodyJoints, &network->scales.joints);
-  fields->Scales(name + ".first_pose", kFirstPoseRows, &network->scales.first_pose);
-  if (structure.frame == MotionFrame::kOwn) {
-    fields->Matrix(name + ".row_mean", kOwnFrameRows, 1, &network->scales.mean);
-    fields->Positive(name + ".row_spread", kOwnFrameRows, &network->scales.spread);
-  }
-  fields->Layer(name + ".time0", kTimeWidth, kConditionWidth, &network->first_time);
-  fields->Layer(name + ".time1", kConditionWidth, kConditionWidth, &network->second_time);
-  fields->Layer(name + ".static0", kStaticRows, kConditionWidth, &network->first_static);
-  fields->Layer(name + ".static1", kConditionWidth, kConditionWidth, &network->second_static);
-  network->blocks.resize(kDiffusionBlocks);
-  for (int b = 0; b < kDiffusionBlocks; ++b) {
-    const BlockWidths widths = WidthsOf(b, structure);
-    const std::string of_block = name + ".block" + std::to_string(b);
-    DiffusionBlock& block = network->blocks[b];
-    fields->Layer(of_block + ".first", kTaps * widths.in, widths.out, &block.first);
-    fields->Layer(of_block + ".second", kTaps * widths.out, widths.out, &block.second);
-    fields->Layer(of_block + ".skip", widths.in, widths.out, &block.skip);
-    fields->Layer(of_block + ".film", kConditionWidth, 2 * widths.out, &block.film);
-  }
-  size_t p = 0;
-  for (int b = 0; b < kDiffusionLevels; ++b) {
-    if (!structure.AttendsAfter(b)) continue;
-    const int width = WidthsOf(b, structure).out;
-    const std::string of_pool = name + ".pool" + std::to_string(b);
-    if (network->pools.size() <= p) network->pools.emplace_back();
-    DiffusionPool& pool = network->pools[p++];
-    fields->Layer(of_pool + ".query", width, width, &pool.query);
-    fields->Layer(of_pool + ".key", width, width, &pool.key);
-    fields->Layer(of_pool + ".value", width, width, &pool.value);
-    fields->Layer(of_pool + ".mixed", width, width, &pool.mixed);
-  }
-  fields->Layer(name + ".out", kTaps * kDownWidths[0], structure.NumMotion(), &network->out);
-  fields->Layer(name + ".direct", structure.NumInputs(), structure.NumMotion(), &network->direct);
 }
 
 // People in order from the left to the right, and from the back to the front.
@@ -216,68 +166,41 @@ void Settle(int first, double frames, Trajectories* motion) {
 
 const GroupChange kMirror = {true};
 
-std::vector<Trajectories> InMirror(const std::vector<Trajectories>& motions) {
-  std::vector<ObservedMotion> people(motions.size());
-  for (size_t n = 0; n < motions.size(); ++n) people[n].frames = motions[n];
-  people = Changed(people, kMirror);
-  std::vector<Trajectories> mirrored;
-  for (ObservedMotion& person : people) mirrored.push_back(std::move(person.frames));
-  return mirrored;
-}
-
-int ObservedFrames(const std::vector<ObservedMotion>& people) {
-  return static_cast<int>(people.front().frames.cols());
-}
-
 }  // namespace
 
-JointScales JointScalesOf(const std::vector<std::vector<ObservedMotion>>& groups) {
-  JointScales squares = JointScales::Zero();
-  float frames = 0.0f;
+MotionScales MotionScalesOf(const std::vector<std::vector<ObservedMotion>>& groups,
+                            MotionFrame frame) {
+  JointScales by_joint = JointScales::Zero();
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(kOwnFrameRows), squares = sum;
+  std::vector<Eigen::VectorXf> first_poses;
+  Eigen::Index frames = 0;
   for (const auto& group : groups) {
     for (const ObservedMotion& person : group) {
       const Trajectories moved = Moved(person);
       for (int j = 0; j < kBodyJoints; ++j) {
-        squares[j] += moved.middleRows(3 * j, 3).squaredNorm() / 3.0f;
+        by_joint[j] += moved.middleRows(3 * j, 3).squaredNorm() / 3.0f;
       }
-      frames += static_cast<float>(moved.cols());
-    }
-  }
-  JointScales scales = (squares / std::max(1.0f, frames)).cwiseSqrt().cwiseMax(kLeastJointScale);
-  scales[kBodyHip] = std::max(scales[kBodyHip], kLeastHipScale);
-  return scales;
-}
-
-Scaling FirstPoseScalingOf(const std::vector<std::vector<ObservedMotion>>& groups) {
-  Eigen::MatrixXf poses(kFirstPoseRows, 0);
-  for (const auto& group : groups) {
-    for (const ObservedMotion& person : group) {
-      poses.conservativeResize(Eigen::NoChange, poses.cols() + 1);
-      poses.rightCols(1) = FromHip(person.frames.leftCols(1)).bottomRows(kFirstPoseRows);
-    }
-  }
-  return ScalingOf(poses, kLeastJointScale);
-}
-
-MotionScales OwnFrameScalesOf(const std::vector<std::vector<ObservedMotion>>& groups) {
-  constexpr double kLeastSpread = 1e-3;  // m, or of a cosine: rows that hardly move
-  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(kOwnFrameRows), squares = sum;
-  double frames = 0.0;
-  for (const auto& group : groups) {
-    for (const ObservedMotion& person : group) {
+      first_poses.emplace_back(FromHip(person.frames.leftCols(1)).bottomRows(kFirstPoseRows));
+      frames += moved.cols();
+      if (frame != MotionFrame::kOwn) continue;
       const Eigen::ArrayXXd rows = OwnRows(person).cast<double>();
       sum += rows.rowwise().sum();
       squares += rows.square().rowwise().sum();
-      frames += static_cast<double>(rows.cols());
     }
   }
-  const Eigen::ArrayXd mean = sum / std::max(1.0, frames);
-  MotionScales scales(JointScalesOf(groups));
+  const double count = std::max(1.0, static_cast<double>(frames));
+  MotionScales scales(
+      (by_joint / static_cast<float>(count)).cwiseSqrt().cwiseMax(kLeastJointScale));
+  scales.joints[kBodyHip] = std::max(scales.joints[kBodyHip], kLeastHipScale);
+  Eigen::MatrixXf poses(kFirstPoseRows, static_cast<Eigen::Index>(first_poses.size()));
+  for (size_t i = 0; i < first_poses.size(); ++i) poses.col(static_cast<int>(i)) = first_poses[i];
+  scales.first_pose = ScalingOf(poses, kLeastJointScale);
+  if (frame != MotionFrame::kOwn) return scales;
+  constexpr double kLeastSpread = 1e-3;  // m, or of a cosine: rows that hardly move
+  const Eigen::ArrayXd mean = sum / count;
   scales.mean = mean.cast<float>();
-  scales.spread = (squares / std::max(1.0, frames) - mean.square())
-                      .max(kLeastSpread * kLeastSpread)
-                      .sqrt()
-                      .cast<float>();
+  const Eigen::ArrayXd variance = squares / count - mean.square();
+  scales.spread = variance.max(kLeastSpread * kLeastSpread).sqrt().cast<float>();
   return scales;
 }
 
@@ -417,37 +340,43 @@ GroupDenoiser::GroupDenoiser(const DiffusionNetwork& network, GroupFeatures feat
   views_ = PoolingWeights(network.structure.pooling, features_.places);
 }
 
-GroupDenoiser::Values GroupDenoiser::Block(int index, const Values& in,
-                                           const Eigen::MatrixXf& conditions) const {
+int GroupDenoiser::FramesOf(const Eigen::MatrixXf& values) const {
+  return static_cast<int>(values.cols()) / features_.people;
+}
+
+Eigen::MatrixXf GroupDenoiser::Block(int index, const Eigen::MatrixXf& in,
+                                     const Eigen::MatrixXf& conditions) const {
   const DiffusionBlock& block = network_.blocks[index];
-  const int stride = StrideOf(index), frames = in.frames / stride;
-  Values out{Applied(block.first, Unfolded(in.data, in.frames, stride)), frames};
-  ApplySilu(&out.data);
+  const int stride = index < kDiffusionLevels ? 2 : 1, frames = FramesOf(in) / stride;
+  Eigen::MatrixXf out = Applied(block.first, Unfolded(in, FramesOf(in), stride));
+  ApplySilu(&out);
   const Eigen::MatrixXf film = Applied(block.film, conditions);
-  const Eigen::Index width = out.data.rows();
+  const Eigen::Index width = out.rows();
   for (int n = 0; n < features_.people; ++n) {
-    auto person = out.data.middleCols(n * frames, frames).array();
+    auto person = out.middleCols(n * frames, frames).array();
     person.colwise() *= 1.0f + film.col(n).head(width).array();
     person.colwise() += film.col(n).tail(width).array();
   }
-  out.data = Applied(block.second, Unfolded(out.data, frames, 1));
-  ApplySilu(&out.data);
-  out.data += Applied(block.skip, stride == 2 ? EverySecond(in.data) : in.data);
+  out = Applied(block.second, Unfolded(out, frames, 1));
+  ApplySilu(&out);
+  out += Applied(block.skip, in(Eigen::all, Eigen::seq(0, Eigen::last, stride)));
   return out;
 }
 
-Eigen::MatrixXf GroupDenoiser::Attended(const DiffusionPool& pool, const Values& values) const {
+Eigen::MatrixXf GroupDenoiser::Attended(const DiffusionPool& pool,
+                                        const Eigen::MatrixXf& values) const {
   const int people = features_.people;
-  const Eigen::MatrixXf queries = Applied(pool.query, values.data);
-  const Eigen::MatrixXf keys = Applied(pool.key, values.data);
-  const Eigen::MatrixXf shown = Applied(pool.value, values.data);
-  const Eigen::Index width = values.data.rows() / kHeads;
+  const Eigen::MatrixXf queries = Applied(pool.query, values);
+  const Eigen::MatrixXf keys = Applied(pool.key, values);
+  const Eigen::MatrixXf shown = Applied(pool.value, values);
+  const Eigen::Index width = values.rows() / kHeads;
   const float scale = 1.0f / std::sqrt(static_cast<float>(width));
+  const int frames = FramesOf(values);
   Eigen::MatrixXf seen(shown.rows(), shown.cols());
   for (int h = 0; h < kHeads; ++h) {
     const auto head = Eigen::seqN(h * width, width);
-    for (int t = 0; t < values.frames; ++t) {
-      const auto at = Eigen::seqN(t, people, values.frames);  // everybody's columns
+    for (int t = 0; t < frames; ++t) {
+      const auto at = Eigen::seqN(t, people, frames);  // everybody's columns
       const Eigen::MatrixXf query = queries(head, at), key = keys(head, at);
       const Eigen::MatrixXf value = shown(head, at);
       Eigen::MatrixXf weights = scale * key.transpose() * query;
@@ -461,31 +390,31 @@ Eigen::MatrixXf GroupDenoiser::Attended(const DiffusionPool& pool, const Values&
   return Applied(pool.mixed, seen);
 }
 
-GroupDenoiser::Values GroupDenoiser::Pooled(int block, const Values& values) const {
+Eigen::MatrixXf GroupDenoiser::Pooled(int block, const Eigen::MatrixXf& values) const {
   const DiffusionStructure& structure = network_.structure;
   if (!structure.PoolsAfter(block)) return values;
-  const Eigen::Index width = values.data.rows(), size = width * values.frames;
-  Eigen::MatrixXf seen(structure.NumViews() * width, values.data.cols());
+  const Eigen::Index width = values.rows(), size = width * FramesOf(values);
+  Eigen::MatrixXf seen(structure.NumViews() * width, values.cols());
   if (structure.AttendsAfter(block)) {
     seen = Attended(network_.pools[structure.join == SocialJoin::kBottleneck ? 0 : block], values);
   } else {
     // A person's frames below one another, a column per person.
-    const Eigen::Map<const Eigen::MatrixXf> all(values.data.data(), size, features_.people);
+    const Eigen::Map<const Eigen::MatrixXf> all(values.data(), size, features_.people);
     for (size_t v = 0; v < views_.size(); ++v) {
       const Eigen::MatrixXf sums = all * views_[v].transpose();
       seen.middleRows(static_cast<Eigen::Index>(v) * width, width) =
-          Eigen::Map<const Eigen::MatrixXf>(sums.data(), width, values.data.cols());
+          Eigen::Map<const Eigen::MatrixXf>(sums.data(), width, values.cols());
     }
   }
-  return {Below(values.data, seen), values.frames};
+  return Stacked(values, seen);
 }
 
-GroupDenoiser::Values GroupDenoiser::Doubled(const Values& values) const {
-  Values doubled{Eigen::MatrixXf(values.data.rows(), 2 * values.data.cols()), 2 * values.frames};
-  for (Eigen::Index k = 0; k < values.data.cols(); ++k) {
-    const Eigen::Index before = k % values.frames == 0 ? k : k - 1;
-    doubled.data.col(2 * k) = 0.5f * (values.data.col(before) + values.data.col(k));
-    doubled.data.col(2 * k + 1) = values.data.col(k);
+Eigen::MatrixXf GroupDenoiser::Doubled(const Eigen::MatrixXf& values) const {
+  Eigen::MatrixXf doubled(values.rows(), 2 * values.cols());
+  for (Eigen::Index k = 0; k < values.cols(); ++k) {
+    const Eigen::Index before = k % FramesOf(values) == 0 ? k : k - 1;
+    doubled.col(2 * k) = 0.5f * (values.col(before) + values.col(k));
+    doubled.col(2 * k + 1) = values.col(k);
   }
   return doubled;
 }
@@ -493,9 +422,9 @@ GroupDenoiser::Values GroupDenoiser::Doubled(const Values& values) const {
 Eigen::MatrixXf GroupDenoiser::Estimate(const Eigen::MatrixXf& noisy, double t) const {
   const int people = features_.people, frames = features_.frames;
   const int motion = network_.structure.NumMotion();
-  Values input{Eigen::MatrixXf::Zero(network_.structure.NumInputs(), people * frames_), frames_};
+  Eigen::MatrixXf input = Eigen::MatrixXf::Zero(network_.structure.NumInputs(), people * frames_);
   for (int n = 0; n < people; ++n) {
-    auto person = input.data.middleCols(n * frames_, frames);
+    auto person = input.middleCols(n * frames_, frames);
     person.topRows(motion) = noisy.middleCols(n * frames, frames);
     person.bottomRows(features_.given.rows()) = features_.given.middleCols(n * frames, frames);
   }
@@ -503,19 +432,18 @@ Eigen::MatrixXf GroupDenoiser::Estimate(const Eigen::MatrixXf& noisy, double t) 
       Perceptron(network_.first_time, network_.second_time, TimeFeatures(t));
   Eigen::MatrixXf conditions = statics_.colwise() + time;
   ApplySilu(&conditions);
-  std::vector<Values> levels;
+  std::vector<Eigen::MatrixXf> levels;
   for (int b = 0; b < kDiffusionLevels; ++b) {
     levels.push_back(Block(b, b == 0 ? input : levels.back(), conditions));
   }
-  Values at = Block(kDiffusionLevels, Pooled(kDiffusionLevels - 1, levels.back()), conditions);
+  Eigen::MatrixXf at =
+      Block(kDiffusionLevels, Pooled(kDiffusionLevels - 1, levels.back()), conditions);
   for (int level = kDiffusionLevels - 2; level >= 0; --level) {
-    at = Doubled(at);
-    at.data = Below(at.data, Pooled(level, levels[level]).data);
-    at = Block(kDiffusionBlocks - 1 - level, at, conditions);
+    at = Block(kDiffusionBlocks - 1 - level, Stacked(Doubled(at), Pooled(level, levels[level])),
+               conditions);
   }
-  at = Doubled(at);
-  Eigen::MatrixXf out = Applied(network_.out, Unfolded(at.data, frames_, 1));
-  out += Applied(network_.direct, input.data);
+  Eigen::MatrixXf out = Applied(network_.out, Unfolded(Doubled(at), frames_, 1));
+  out += Applied(network_.direct, input);
   Eigen::MatrixXf estimate(motion, people * frames);
   for (int n = 0; n < people; ++n) {
     estimate.middleCols(n * frames, frames) = out.middleCols(n * frames_, frames);
@@ -523,19 +451,42 @@ Eigen::MatrixXf GroupDenoiser::Estimate(const Eigen::MatrixXf& noisy, double t) 
   return estimate;
 }
 
-void AddTensors(const std::string& name, const DiffusionNetwork& network, TensorList* tensors) {
-  DiffusionNetwork written = network;
-  TensorFields fields(tensors);
-  ListTensors(name, &written, &fields);
-}
-
-DiffusionNetwork TakeDiffusion(const std::string& name, const DiffusionStructure& structure,
-                               TensorReader* reader) {
-  DiffusionNetwork network;
-  network.structure = structure;
-  TensorFields fields(reader);
-  ListTensors(name, &network, &fields);
-  return network;
+void ListTensors(const std::string& prefix, DiffusionNetwork* network, TensorFields* fields) {
+  const DiffusionStructure& structure = network->structure;
+  fields->Positive(prefix + "scales", kBodyJoints, &network->scales.joints);
+  fields->Scales(prefix + "first_pose", kFirstPoseRows, &network->scales.first_pose);
+  if (structure.frame == MotionFrame::kOwn) {
+    fields->Matrix(prefix + "row_mean", kOwnFrameRows, 1, &network->scales.mean);
+    fields->Positive(prefix + "row_spread", kOwnFrameRows, &network->scales.spread);
+  }
+  fields->Layer(prefix + "time0", kTimeWidth, kConditionWidth, &network->first_time);
+  fields->Layer(prefix + "time1", kConditionWidth, kConditionWidth, &network->second_time);
+  fields->Layer(prefix + "static0", kStaticRows, kConditionWidth, &network->first_static);
+  fields->Layer(prefix + "static1", kConditionWidth, kConditionWidth, &network->second_static);
+  network->blocks.resize(kDiffusionBlocks);
+  for (int b = 0; b < kDiffusionBlocks; ++b) {
+    const BlockWidths widths = WidthsOf(b, structure);
+    const std::string of_block = prefix + "block" + std::to_string(b);
+    DiffusionBlock& block = network->blocks[b];
+    fields->Layer(of_block + ".first", kTaps * widths.in, widths.out, &block.first);
+    fields->Layer(of_block + ".second", kTaps * widths.out, widths.out, &block.second);
+    fields->Layer(of_block + ".skip", widths.in, widths.out, &block.skip);
+    fields->Layer(of_block + ".film", kConditionWidth, 2 * widths.out, &block.film);
+  }
+  size_t p = 0;
+  for (int b = 0; b < kDiffusionLevels; ++b) {
+    if (!structure.AttendsAfter(b)) continue;
+    const int width = WidthsOf(b, structure).out;
+    const std::string of_pool = prefix + "pool" + std::to_string(b);
+    if (network->pools.size() <= p) network->pools.emplace_back();
+    DiffusionPool& pool = network->pools[p++];
+    fields->Layer(of_pool + ".query", width, width, &pool.query);
+    fields->Layer(of_pool + ".key", width, width, &pool.key);
+    fields->Layer(of_pool + ".value", width, width, &pool.value);
+    fields->Layer(of_pool + ".mixed", width, width, &pool.mixed);
+  }
+  fields->Layer(prefix + "out", kTaps * kDownWidths[0], structure.NumMotion(), &network->out);
+  fields->Layer(prefix + "direct", structure.NumInputs(), structure.NumMotion(), &network->direct);
 }
 
 Eigen::MatrixXf NoisedAgain(const Eigen::MatrixXf& estimate, const Eigen::MatrixXf& noise,
@@ -566,7 +517,7 @@ std::vector<Trajectories> DiffusionGenerator::SampleWhole(const std::vector<Obse
                                                           int frames,
                                                           const NormalSource& normal) const {
   const int count = static_cast<int>(people.size());
-  const int seen = ObservedFrames(people);
+  const int seen = static_cast<int>(people.front().frames.cols());
   const GroupDenoiser denoise(network, FeaturesOf(people, network.scales, seen, frames, dt_));
   std::vector<Eigen::MatrixXf> past;
   for (const ObservedMotion& person : people) past.push_back(MotionRows(person, network.scales));
@@ -589,10 +540,7 @@ std::vector<Trajectories> DiffusionGenerator::SampleWhole(const std::vector<Obse
   for (int n = 0; n < count; ++n) {
     motions.push_back(
         FromMotionRows(estimate.middleCols(n * frames, frames), people[n], network.scales));
-  }
-  for (Trajectories& motion : motions) {
-    if (!options_.settle) break;
-    Settle(options_.learnt_frames, options_.settling / dt_, &motion);
+    if (options_.settle) Settle(options_.learnt_frames, options_.settling / dt_, &motions.back());
   }
   return motions;
 }
@@ -625,10 +573,11 @@ std::vector<Trajectories> DiffusionGenerator::SampledMean(const std::vector<Obse
   for (int k = 0; k < options_.averaged; ++k) {
     const bool other = options_.mirrored && k % 2 == 1;
     const DiffusionNetwork& network = Member(options_.mirrored ? k / 2 : k);
-    std::vector<Trajectories> sample =
+    const std::vector<Trajectories> sample =
         SampleWhole(other ? mirrored : people, network, frames, normal);
-    if (other) sample = InMirror(sample);
-    for (size_t n = 0; n < people.size(); ++n) mean[n] += sample[n];
+    for (size_t n = 0; n < people.size(); ++n) {
+      mean[n] += other ? Changed({{sample[n]}}, kMirror).front().frames : sample[n];
+    }
   }
   for (Trajectories& motion : mean) motion /= static_cast<float>(options_.averaged);
   return mean;
@@ -637,7 +586,7 @@ std::vector<Trajectories> DiffusionGenerator::SampledMean(const std::vector<Obse
 std::vector<Trajectories> DiffusionGenerator::Forecast(const std::vector<ObservedMotion>& people,
                                                        int frames) const {
   if (people.empty()) return {};
-  const int whole = ObservedFrames(people) + frames;
+  const int whole = static_cast<int>(people.front().frames.cols()) + frames;
   std::vector<Trajectories> mean;
   if (options_.sampled && !options_.sampled->empty()) mean = *options_.sampled;
   if (mean.empty()) mean = SampledMean(people, whole);

@@ -67,11 +67,15 @@ inline constexpr int kStaticRows = kFirstPoseRows + 2 + 1 + 1 + 1 + kPushRows + 
 inline constexpr int kOwnFrameRows = kMotionRows + 2;
 inline int GivenRows(int motion_rows = kMotionRows) { return motion_rows + 1 + kPushRows; }
 
-// m, by joint: what a unit of a motion's row is.
-using JointScales = Eigen::Matrix<float, kBodyJoints, 1>;
-JointScales JointScalesOf(const std::vector<std::vector<ObservedMotion>>& groups);
+// The frame of the motion's rows (above).
+enum class MotionFrame { kGroup, kOwn };
+constexpr EnumNames<MotionFrame, 2> Names(MotionFrame) {
+  return {{{"group", MotionFrame::kGroup}, {"own", MotionFrame::kOwn}}};
+}
 
-// What a unit of a motion's row is, and in which frame rows are.
+using JointScales = Eigen::Matrix<float, kBodyJoints, 1>;  // m, by joint
+
+// Units of a motion's rows, and the frame that they are in.
 struct MotionScales {
   MotionScales() = default;
   // Scales of joints in the group's frame.
@@ -87,9 +91,9 @@ struct MotionScales {
   bool own_frames() const { return mean.size() > 0; }
   int rows() const { return own_frames() ? kOwnFrameRows : kMotionRows; }
 };
-Scaling FirstPoseScalingOf(const std::vector<std::vector<ObservedMotion>>& groups);
-// Mean and standard deviation of every row over all frames and people of the groups.
-MotionScales OwnFrameScalesOf(const std::vector<std::vector<ObservedMotion>>& groups);
+// Over all frames and people of the groups.
+MotionScales MotionScalesOf(const std::vector<std::vector<ObservedMotion>>& groups,
+                            MotionFrame frame);
 
 struct GroupFeatures {
   int people = 0, frames = 0;
@@ -137,19 +141,12 @@ constexpr EnumNames<SocialJoin, 2> Names(SocialJoin) {
   return {{{"levels", SocialJoin::kLevels}, {"bottleneck", SocialJoin::kBottleneck}}};
 }
 
-// The frame of the motion's rows (above).
-enum class MotionFrame { kGroup, kOwn };
-constexpr EnumNames<MotionFrame, 2> Names(MotionFrame) {
-  return {{{"group", MotionFrame::kGroup}, {"own", MotionFrame::kOwn}}};
-}
-
 struct DiffusionStructure {
   SocialPooling pooling = SocialPooling::kLocal;
   SocialJoin join = SocialJoin::kLevels;
   MotionFrame frame = MotionFrame::kGroup;
 
   int NumViews() const { return pooling == SocialPooling::kLocal ? 2 : 1; }
-  bool Pools() const { return pooling != SocialPooling::kNone; }
   bool PoolsAfter(int block) const;
   bool AttendsAfter(int block) const {
     return pooling == SocialPooling::kHeads && PoolsAfter(block);
@@ -171,7 +168,7 @@ struct BlockWidths {
 BlockWidths WidthsOf(int block, const DiffusionStructure& structure);
 
 inline bool DiffusionStructure::PoolsAfter(int block) const {
-  if (!Pools() || block >= kDiffusionLevels) return false;
+  if (pooling == SocialPooling::kNone || block >= kDiffusionLevels) return false;
   return join == SocialJoin::kLevels || block == kDiffusionLevels - 1;
 }
 
@@ -192,7 +189,8 @@ struct DiffusionNetwork {
   DenseLayer out, direct;
 };
 
-// How much person i (a row) sees of person j (a column), a matrix for each view; not of attention.
+// Weights by which person i (a row) sees person j (a column), a matrix for each view; none of
+// attention.
 std::vector<Eigen::MatrixXf> PoolingWeights(SocialPooling pooling, const Eigen::Matrix2Xf& places);
 
 // Sines and cosines of t at 32 frequencies.
@@ -206,17 +204,15 @@ class GroupDenoiser {
   Eigen::MatrixXf Estimate(const Eigen::MatrixXf& noisy, double t) const;
 
  private:
-  // channels x (people * frames)
-  struct Values {
-    Eigen::MatrixXf data;
-    int frames = 0;
-  };
+  // Values are channels x (people * frames).
+  int FramesOf(const Eigen::MatrixXf& values) const;
   // conditions: of FiLM, a column per person.
-  Values Block(int index, const Values& in, const Eigen::MatrixXf& conditions) const;
-  // With what people see of each other below it.
-  Values Pooled(int index, const Values& values) const;
-  Eigen::MatrixXf Attended(const DiffusionPool& pool, const Values& values) const;
-  Values Doubled(const Values& values) const;
+  Eigen::MatrixXf Block(int index, const Eigen::MatrixXf& in,
+                        const Eigen::MatrixXf& conditions) const;
+  // The values, and below them what people see of each other.
+  Eigen::MatrixXf Pooled(int index, const Eigen::MatrixXf& values) const;
+  Eigen::MatrixXf Attended(const DiffusionPool& pool, const Eigen::MatrixXf& values) const;
+  Eigen::MatrixXf Doubled(const Eigen::MatrixXf& values) const;
 
   const DiffusionNetwork& network_;
   GroupFeatures features_;
@@ -225,11 +221,9 @@ class GroupDenoiser {
   std::vector<Eigen::MatrixXf> views_;
 };
 
-void AddTensors(const std::string& name, const DiffusionNetwork& network, TensorList* tensors);
-DiffusionNetwork TakeDiffusion(const std::string& name, const DiffusionStructure& structure,
-                               TensorReader* reader);
+void ListTensors(const std::string& prefix, DiffusionNetwork* network, TensorFields* fields);
 
-// How much of a motion is left after t of T steps of forward noise, and the way back.
+// The share of a motion that is left after t of T steps of forward noise, and the way back.
 //
 //   x_t = sqrt(a_t) x_0 + sqrt(1 - a_t) e,  e ~ N(0, 1)
 //   a_t = f(t) / f(0),  f(t) = cos^2((t / T + s) / (1 + s) pi / 2)   the cosine schedule, s = 0.008

@@ -8,6 +8,7 @@
 #include "models/restoration/support_torch.h"
 
 namespace pushid {
+namespace {
 
 // A row of `sums` for every row that comes out: what it sums, with which weights. Filled row by
 // row.
@@ -24,18 +25,18 @@ struct RowMap : torch::CustomClassHolder {
 using RowMapPointer = c10::intrusive_ptr<RowMap>;
 
 using RowMajorMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-inline Eigen::Map<RowMajorMatrix> AsMatrix(const torch::Tensor& rows) {
+Eigen::Map<RowMajorMatrix> AsMatrix(const Tensor& rows) {
   return {rows.data_ptr<float>(), rows.size(0), rows.size(1)};
 }
 
 // [row, channel] to [row, channel].
 class MappedRows : public torch::autograd::Function<MappedRows> {
  public:
-  static torch::Tensor forward(torch::autograd::AutogradContext* context, const torch::Tensor& x,
-                               const RowMapPointer& map) {
+  static Tensor forward(torch::autograd::AutogradContext* context, const Tensor& x,
+                        const RowMapPointer& map) {
     context->saved_data["map"] = c10::IValue::make_capsule(map);
-    const torch::Tensor to = torch::empty({map->sums.rows(), x.size(1)});
-    const torch::Tensor from = x.contiguous();
+    const Tensor to = torch::empty({map->sums.rows(), x.size(1)});
+    const Tensor from = x.contiguous();
     AsMatrix(to).noalias() = map->sums * AsMatrix(from);
     return to;
   }
@@ -44,16 +45,14 @@ class MappedRows : public torch::autograd::Function<MappedRows> {
                                                  const torch::autograd::variable_list& gradients) {
     const auto map =
         c10::static_intrusive_pointer_cast<RowMap>(context->saved_data["map"].toCapsule());
-    const torch::Tensor from = gradients[0].contiguous();
-    const torch::Tensor to = torch::empty({map->sums.cols(), from.size(1)});
+    const Tensor from = gradients[0].contiguous();
+    const Tensor to = torch::empty({map->sums.cols(), from.size(1)});
     AsMatrix(to).noalias() = map->sums.transpose() * AsMatrix(from);
-    return {to, torch::Tensor()};
+    return {to, Tensor()};
   }
 };
 
-inline torch::Tensor Mapped(const torch::Tensor& x, const RowMapPointer& map) {
-  return MappedRows::apply(x, map);
-}
+Tensor Mapped(const Tensor& x, const RowMapPointer& map) { return MappedRows::apply(x, map); }
 
 // Where rows of a level come from. Level l has every 2^l-th frame.
 struct LevelMaps {
@@ -68,11 +67,11 @@ struct LevelMaps {
 };
 
 struct DiffusionBatch {
-  torch::Tensor truth;                              // [row, motion row]; x_0
-  torch::Tensor given;                              // [row, given row]
-  torch::Tensor weights;                            // [row, 1], of the loss
-  torch::Tensor step_weights;                       // the same, 0 where a motion begins
-  torch::Tensor statics;                            // [person, static row]
+  Tensor truth;                                     // [row, motion row]; x_0
+  Tensor given;                                     // [row, given row]
+  Tensor weights;                                   // [row, 1], of the loss
+  Tensor step_weights;                              // the same, 0 where a motion begins
+  Tensor statics;                                   // [person, static row]
   std::vector<int64_t> sizes;                       // of the groups
   std::vector<int64_t> frames;                      // of their motions
   std::vector<std::vector<Eigen::MatrixXf>> views;  // [group][view], as PoolingWeights
@@ -85,20 +84,18 @@ class DiffusionConvolution : public torch::nn::Module {
   DiffusionConvolution(int64_t inputs, int64_t outputs, int64_t taps, bool halves, double size)
       : taps_(taps), outputs_(outputs), halves_(halves) {
     const double bound = size / std::sqrt(static_cast<double>(inputs * taps));
-    const torch::Tensor drawn = (2.0 * torch::rand({outputs, inputs, taps}) - 1.0) * bound;
+    const Tensor drawn = (2.0 * torch::rand({outputs, inputs, taps}) - 1.0) * bound;
     weight_ = register_parameter("weight", halves ? drawn.permute({0, 2, 1}).flatten(1)
                                                   : drawn.permute({2, 0, 1}).flatten(0, 1));
     bias_ = register_parameter("bias", torch::zeros({outputs}));
   }
-  torch::Tensor operator()(const torch::Tensor& x) const {
-    return torch::linear(x, weight_, bias_);
-  }
-  torch::Tensor operator()(const torch::Tensor& x, const LevelMaps& at) const {
-    const torch::Tensor by_tap = torch::linear(x, weight_).view({-1, outputs_});
+  Tensor operator()(const Tensor& x) const { return torch::linear(x, weight_, bias_); }
+  Tensor operator()(const Tensor& x, const LevelMaps& at) const {
+    const Tensor by_tap = torch::linear(x, weight_).view({-1, outputs_});
     return Mapped(by_tap, at.tapped).add_(bias_);
   }
   DenseLayer Layer() const {
-    const torch::Tensor by_output =
+    const Tensor by_output =
         halves_ ? weight_ : weight_.view({taps_, outputs_, -1}).transpose(0, 1).flatten(1);
     return {ToMatrix(by_output), ToVector(bias_)};
   }
@@ -106,7 +103,7 @@ class DiffusionConvolution : public torch::nn::Module {
  private:
   int64_t taps_, outputs_;
   bool halves_;
-  torch::Tensor weight_, bias_;
+  Tensor weight_, bias_;
 };
 
 class DiffusionModule : public torch::nn::Module {
@@ -127,25 +124,24 @@ class DiffusionModule : public torch::nn::Module {
   }
 
   // time: [person, time feature]
-  torch::Tensor Estimate(const torch::Tensor& noisy, const torch::Tensor& time,
-                         const DiffusionBatch& batch) {
-    const torch::Tensor input = torch::cat({noisy, batch.given}, 1);
-    const auto dropped = [this](const torch::Tensor& x) {
+  Tensor Estimate(const Tensor& noisy, const Tensor& time, const DiffusionBatch& batch) {
+    const Tensor input = torch::cat({noisy, batch.given}, 1);
+    const auto dropped = [this](const Tensor& x) {
       return torch::dropout(x, dropout_, is_training());
     };
-    const torch::Tensor hidden = dropped(torch::silu(first_static_->forward(batch.statics)));
-    const torch::Tensor of_time = second_time_->forward(torch::silu(first_time_->forward(time)));
-    const torch::Tensor conditions = torch::silu(of_time + second_static_->forward(hidden));
-    std::vector<torch::Tensor> levels;
+    const Tensor hidden = dropped(torch::silu(first_static_->forward(batch.statics)));
+    const Tensor of_time = second_time_->forward(torch::silu(first_time_->forward(time)));
+    const Tensor conditions = torch::silu(of_time + second_static_->forward(hidden));
+    std::vector<Tensor> levels;
     for (int b = 0; b < kDiffusionLevels; ++b) {
-      const torch::Tensor& above = b == 0 ? input : levels.back();
+      const Tensor& above = b == 0 ? input : levels.back();
       const LevelMaps& maps = batch.levels[b + 1];
-      const torch::Tensor taps = Mapped(above, maps.taps).view({-1, kTaps * above.size(1)});
+      const Tensor taps = Mapped(above, maps.taps).view({-1, kTaps * above.size(1)});
       levels.push_back(Finished(b, (*blocks_[b].first)(taps),
                                 taps.narrow(1, (kTaps - 1) * above.size(1), above.size(1)),
                                 conditions, maps));
     }
-    torch::Tensor at = dropped(Pooled(kDiffusionLevels - 1, levels.back(), batch));
+    Tensor at = dropped(Pooled(kDiffusionLevels - 1, levels.back(), batch));
     for (int level = kDiffusionLevels - 1; level >= 0; --level) {
       const LevelMaps& maps = batch.levels[level + 1];
       const int b = kDiffusionBlocks - 1 - level;
@@ -221,25 +217,25 @@ class DiffusionModule : public torch::nn::Module {
   }
 
   // A block from its first convolution on; x: what came in, of the frames that go out.
-  torch::Tensor Finished(int b, const torch::Tensor& first, const torch::Tensor& x,
-                         const torch::Tensor& conditions, const LevelMaps& maps) {
+  Tensor Finished(int b, const Tensor& first, const Tensor& x, const Tensor& conditions,
+                  const LevelMaps& maps) {
     Block& block = blocks_[b];
-    const std::vector<torch::Tensor> film = block.film->forward(conditions).chunk(2, 1);
-    const torch::Tensor inner = torch::addcmul(Mapped(film[1], maps.people), torch::silu(first),
-                                               Mapped(1.0 + film[0], maps.people));
+    const std::vector<Tensor> film = block.film->forward(conditions).chunk(2, 1);
+    const Tensor inner = torch::addcmul(Mapped(film[1], maps.people), torch::silu(first),
+                                        Mapped(1.0 + film[0], maps.people));
     return torch::silu((*block.second)(inner, maps)) + (*block.skip)(x);
   }
 
-  torch::Tensor Pooled(int block, const torch::Tensor& y, const DiffusionBatch& batch) const {
+  Tensor Pooled(int block, const Tensor& y, const DiffusionBatch& batch) const {
     if (!structure_.PoolsAfter(block)) return y;
     const LevelMaps& maps = batch.levels[block + 1];
     if (!structure_.AttendsAfter(block)) {
-      const torch::Tensor seen = Mapped(y, maps.seen);
+      const Tensor seen = Mapped(y, maps.seen);
       return torch::cat({y, seen.view({y.size(0), structure_.NumViews() * y.size(1)})}, 1);
     }
     const Pool& pool = pools_[structure_.join == SocialJoin::kBottleneck ? 0 : block];
-    const std::vector<torch::Tensor> groups = y.split_with_sizes(maps.group_rows, 0);
-    std::vector<torch::Tensor> seen;
+    const std::vector<Tensor> groups = y.split_with_sizes(maps.group_rows, 0);
+    std::vector<Tensor> seen;
     for (size_t g = 0; g < groups.size(); ++g) {
       seen.push_back(Attended(pool, groups[g], batch.sizes[g]));
     }
@@ -247,16 +243,16 @@ class DiffusionModule : public torch::nn::Module {
   }
 
   // A softmax over everybody, frame by frame.
-  static torch::Tensor Attended(const Pool& pool, const torch::Tensor& y, int64_t people) {
+  static Tensor Attended(const Pool& pool, const Tensor& y, int64_t people) {
     const int64_t width = y.size(1);
     // [frame, head, person, channel]
     const auto by_head = [&](const ConvolutionPointer& layer) {
       return (*layer)(y).view({people, -1, kHeads, width / kHeads}).permute({1, 2, 0, 3});
     };
     const double scale = 1.0 / std::sqrt(static_cast<double>(width / kHeads));
-    const torch::Tensor scores =
+    const Tensor scores =
         scale * torch::matmul(by_head(pool.query), by_head(pool.key).transpose(2, 3));
-    const torch::Tensor seen = torch::matmul(torch::softmax(scores, 3), by_head(pool.value));
+    const Tensor seen = torch::matmul(torch::softmax(scores, 3), by_head(pool.value));
     return (*pool.mixed)(seen.permute({2, 0, 1, 3}).reshape({y.size(0), width}));
   }
 
@@ -268,31 +264,6 @@ class DiffusionModule : public torch::nn::Module {
   std::vector<Pool> pools_;
   ConvolutionPointer out_, direct_;
 };
-
-class DiffusionBatches {
- public:
-  DiffusionBatches(const std::vector<ObservedGroup>& groups, const MotionScales& scales,
-                   const DiffusionTrainingOptions& options);
-
-  bool empty() const { return groups_.empty() && alone_.empty(); }
-  // The batch of a training step, with all that is random in it.
-  DiffusionBatch Draw(int step) const;
-  // The batch of these groups as recorded, the first frame shown; at most `most`.
-  DiffusionBatch AsTheyAre(int most) const;
-
- private:
-  ObservedGroup Varied(const ObservedGroup& group) const;
-  void AddBystanders(ObservedGroup* group) const;
-
-  const MotionScales scales_;
-  const DiffusionTrainingOptions& options_;
-  std::vector<ObservedGroup> groups_, alone_;
-};
-
-// One group's features as a batch of it alone.
-DiffusionBatch BatchOf(const GroupFeatures& features, const DiffusionStructure& structure);
-
-namespace {
 
 constexpr int kUsualPast = 20, kLeastPast = 2, kMostPast = 30;       // frames
 constexpr double kOneFrame = 0.5, kUsual = 0.3, kNothing = 0.15;     // shares of groups
@@ -394,13 +365,13 @@ DiffusionBatch WithoutMaps(const GroupFeatures& features, const DiffusionStructu
 // Groups of one batch.
 DiffusionBatch Joined(const std::vector<ObservedGroup>& groups, const std::vector<int>& past,
                       const MotionScales& scales, const DiffusionTrainingOptions& options) {
-  std::vector<torch::Tensor> truth, given, weights, step_weights, statics;
+  std::vector<Tensor> truth, given, weights, step_weights, statics;
   DiffusionBatch all;
   for (size_t g = 0; g < groups.size(); ++g) {
     const int frames = FramesOf(groups[g]);
     const GroupFeatures features = FeaturesOf(groups[g], scales, past[g], frames, options.dt);
     const DiffusionBatch one = WithoutMaps(features, options.structure);
-    torch::Tensor of_person = torch::ones({frames, 1});
+    Tensor of_person = torch::ones({frames, 1});
     of_person.narrow(0, 0, past[g]).fill_(options.observed_weight);
     for (const ObservedMotion& person : groups[g]) {
       truth.push_back(ToTensor(MotionRows(person, scales)));
@@ -419,77 +390,79 @@ DiffusionBatch Joined(const std::vector<ObservedGroup>& groups, const std::vecto
   return all;
 }
 
-}  // namespace
-
-DiffusionBatch BatchOf(const GroupFeatures& features, const DiffusionStructure& structure) {
-  DiffusionBatch batch = WithoutMaps(features, structure);
-  AddMaps(&batch);
-  return batch;
-}
-
-DiffusionBatches::DiffusionBatches(const std::vector<ObservedGroup>& groups,
-                                   const MotionScales& scales,
-                                   const DiffusionTrainingOptions& options)
-    : scales_(scales), options_(options) {
-  for (const ObservedGroup& group : groups) {
-    (group.size() > 1 ? groups_ : alone_).push_back(group);
-  }
-}
-
-void DiffusionBatches::AddBystanders(ObservedGroup* group) const {
-  const size_t count = 1 + Pick(2);
-  for (size_t k = 0; k < count; ++k) {
-    const ObservedGroup& from = groups_[Pick(groups_.size())];
-    ObservedMotion person = from[Pick(from.size())];
-    const Eigen::VectorXf first = person.frames.col(0);
-    person.frames = first.replicate(1, group->front().frames.cols());
-    person.controls = {};
-    const double way = Uniform(kNearestBystander, kFarthestBystander);
-    const double angle = Uniform(-M_PI, M_PI);
-    // Seen from the outermost in that direction, so that nobody is nearer.
-    const Eigen::Vector2f direction(static_cast<float>(std::cos(angle)),
-                                    static_cast<float>(std::sin(angle)));
-    float outermost = -1e9f;
-    Eigen::Vector2f edge = Eigen::Vector2f::Zero();
-    for (const ObservedMotion& other : *group) {
-      if (other.place.dot(direction) <= outermost) continue;
-      outermost = other.place.dot(direction);
-      edge = other.place;
+// Groups to learn from.
+class DiffusionBatches {
+ public:
+  DiffusionBatches(const std::vector<ObservedGroup>& groups, const MotionScales& scales,
+                   const DiffusionTrainingOptions& options)
+      : scales_(scales), options_(options) {
+    for (const ObservedGroup& group : groups) {
+      (group.size() > 1 ? groups_ : alone_).push_back(group);
     }
-    person.place = edge + static_cast<float>(way) * direction;
-    group->push_back(std::move(person));
   }
-}
 
-ObservedGroup DiffusionBatches::Varied(const ObservedGroup& group) const {
-  const GroupChange change{Uniform(0.0, 1.0) < options_.mirrored,
-                           Uniform(-options_.turn, options_.turn),
-                           1.0 + Uniform(-options_.size, options_.size)};
-  ObservedGroup varied = Changed(group, change);
-  if (group.size() > 1 && Uniform(0.0, 1.0) < options_.bystanders) AddBystanders(&varied);
-  return varied;
-}
+  bool empty() const { return groups_.empty() && alone_.empty(); }
 
-DiffusionBatch DiffusionBatches::Draw(int step) const {
-  const bool of_groups = alone_.empty() || (!groups_.empty() && step % kAloneEvery != 0);
-  const std::vector<ObservedGroup>& from = of_groups ? groups_ : alone_;
-  std::vector<ObservedGroup> drawn;
-  std::vector<int> past;
-  for (int k = 0; k < (of_groups ? options_.groups : options_.people_alone); ++k) {
-    drawn.push_back(Varied(from[Pick(from.size())]));
-    past.push_back(DrawnPast(FramesOf(drawn.back())));
+  // The batch of a training step, with all that is random in it.
+  DiffusionBatch Draw(int step) const {
+    const bool of_groups = alone_.empty() || (!groups_.empty() && step % kAloneEvery != 0);
+    const std::vector<ObservedGroup>& from = of_groups ? groups_ : alone_;
+    std::vector<ObservedGroup> drawn;
+    std::vector<int> past;
+    for (int k = 0; k < (of_groups ? options_.groups : options_.people_alone); ++k) {
+      drawn.push_back(Varied(from[Pick(from.size())]));
+      past.push_back(DrawnPast(FramesOf(drawn.back())));
+    }
+    return Joined(drawn, past, scales_, options_);
   }
-  return Joined(drawn, past, scales_, options_);
-}
 
-DiffusionBatch DiffusionBatches::AsTheyAre(int most) const {
-  std::vector<ObservedGroup> all = groups_;
-  all.insert(all.end(), alone_.begin(), alone_.end());
-  if (static_cast<int>(all.size()) > most) all.resize(most);
-  return Joined(all, std::vector<int>(all.size(), 1), scales_, options_);
-}
+  // The batch of these groups as recorded, the first frame shown; at most `most`.
+  DiffusionBatch AsTheyAre(int most) const {
+    std::vector<ObservedGroup> all = groups_;
+    all.insert(all.end(), alone_.begin(), alone_.end());
+    if (static_cast<int>(all.size()) > most) all.resize(most);
+    return Joined(all, std::vector<int>(all.size(), 1), scales_, options_);
+  }
 
-namespace {
+ private:
+  ObservedGroup Varied(const ObservedGroup& group) const {
+    const GroupChange change{Uniform(0.0, 1.0) < options_.mirrored,
+                             Uniform(-options_.turn, options_.turn),
+                             1.0 + Uniform(-options_.size, options_.size)};
+    ObservedGroup varied = Changed(group, change);
+    if (group.size() > 1 && Uniform(0.0, 1.0) < options_.bystanders) AddBystanders(&varied);
+    return varied;
+  }
+
+  void AddBystanders(ObservedGroup* group) const {
+    const size_t count = 1 + Pick(2);
+    for (size_t k = 0; k < count; ++k) {
+      const ObservedGroup& from = groups_[Pick(groups_.size())];
+      ObservedMotion person = from[Pick(from.size())];
+      const Eigen::VectorXf first = person.frames.col(0);
+      person.frames = first.replicate(1, group->front().frames.cols());
+      person.controls = {};
+      const double way = Uniform(kNearestBystander, kFarthestBystander);
+      const double angle = Uniform(-M_PI, M_PI);
+      // Seen from the outermost in that direction, so that nobody is nearer.
+      const Eigen::Vector2f direction(static_cast<float>(std::cos(angle)),
+                                      static_cast<float>(std::sin(angle)));
+      float outermost = -1e9f;
+      Eigen::Vector2f edge = Eigen::Vector2f::Zero();
+      for (const ObservedMotion& other : *group) {
+        if (other.place.dot(direction) <= outermost) continue;
+        outermost = other.place.dot(direction);
+        edge = other.place;
+      }
+      person.place = edge + static_cast<float>(way) * direction;
+      group->push_back(std::move(person));
+    }
+  }
+
+  const MotionScales scales_;
+  const DiffusionTrainingOptions& options_;
+  std::vector<ObservedGroup> groups_, alone_;
+};
 
 constexpr double kRateFloor = 0.02;  // share of the largest
 constexpr int kHeldGroups = 32;
@@ -503,26 +476,16 @@ double RateShareToFloor(int step, int steps, int warm_up) {
   return kRateFloor + (1.0 - kRateFloor) * 0.5 * (1.0 + std::cos(M_PI * down));
 }
 
-MotionScales ScalesOf(const std::vector<ObservedGroup>& learnt, MotionFrame frame) {
-  MotionScales scales =
-      frame == MotionFrame::kOwn ? OwnFrameScalesOf(learnt) : MotionScales(JointScalesOf(learnt));
-  scales.first_pose = FirstPoseScalingOf(learnt);
-  return scales;
-}
-
 // x_t, whose signal has the share a of [row, 1].
-torch::Tensor Noised(const torch::Tensor& truth, const torch::Tensor& a,
-                     const torch::Tensor& noise) {
+Tensor Noised(const Tensor& truth, const Tensor& a, const Tensor& noise) {
   return a.sqrt() * truth + (1.0 - a).sqrt() * noise;
 }
 
-}  // namespace
-
-struct DiffusionTrainer::Torch : StepsRun<Run, Torch> {
-  Torch(const std::vector<ObservedGroup>& learnt, const std::vector<ObservedGroup>& held,
-        const DiffusionTrainingOptions& given)
+struct DiffusionTraining : StepsTraining<DiffusionTrainer> {
+  DiffusionTraining(const std::vector<ObservedGroup>& learnt,
+                    const std::vector<ObservedGroup>& held, const DiffusionTrainingOptions& given)
       : options(given),
-        scales(ScalesOf(learnt, given.structure.frame)),
+        scales(MotionScalesOf(learnt, given.structure.frame)),
         batches(learnt, scales, options),
         held_batches(held, scales, options) {
     Eigen::MatrixXf of_rows = Eigen::MatrixXf::Zero(kMotionRows, kMotionRows);
@@ -533,35 +496,40 @@ struct DiffusionTrainer::Torch : StepsRun<Run, Torch> {
       sums(row / 3, row) = 1.0f;
     }
     joints_of_rows = ToTensor(of_rows), sums_of_joints = ToTensor(sums);
+    StartTraining(options);
+    module = std::make_shared<DiffusionModule>(options.structure, options.dropout);
+    mean = std::make_shared<DiffusionModule>(options.structure, options.dropout);
+    CopyWeights(*module, mean.get());
+    mean->eval();
+    optimizer = MakeOptimizer(module->parameters(), options.learning_rate, options.weight_decay);
   }
 
   DiffusionTrainingOptions options;
   MotionScales scales;
-  torch::Tensor joints_of_rows, sums_of_joints;  // [row, row], m; [row, joint]
+  Tensor joints_of_rows, sums_of_joints;  // [row, row], m; [row, joint]
   DiffusionBatches batches, held_batches;
   std::shared_ptr<DiffusionModule> module, mean;  // mean: of the weights
-  std::unique_ptr<torch::optim::AdamW> optimizer;
+  std::unique_ptr<AdamW> optimizer;
 
-  template <typename Fields>
-  void Keep(Fields* fields) {
-    fields->Part("module", module.get());
-    fields->Part("mean", mean.get());
-    fields->Part("optimizer", optimizer.get());
-    fields->Numbers("step", &step);
+  void Keep(StateArchive* state) override {
+    state->Part("module", module.get());
+    state->Part("mean", mean.get());
+    state->Part("optimizer", optimizer.get());
+    state->Numbers("step", &step);
   }
 
   // times: of the groups, whose people are at the same stage of the way back.
-  torch::Tensor Estimate(DiffusionModule* of, const torch::Tensor& noisy,
-                         const std::vector<double>& times, const DiffusionBatch& batch) const {
-    std::vector<torch::Tensor> features;
+  Tensor EstimateBy(DiffusionModule* of, const Tensor& noisy, const std::vector<double>& times,
+                    const DiffusionBatch& batch) const {
+    std::vector<Tensor> features;
     for (size_t g = 0; g < times.size(); ++g) {
       features.insert(features.end(), batch.sizes[g], ToTensor(TimeFeatures(times[g])));
     }
     return of->Estimate(noisy, torch::stack(features), batch);
   }
 
-  static torch::Tensor Shares(const std::vector<double>& times, const DiffusionBatch& batch) {
-    std::vector<torch::Tensor> shares;
+  static Tensor Shares(const std::vector<double>& times, const DiffusionBatch& batch) {
+    std::vector<Tensor> shares;
     for (size_t g = 0; g < times.size(); ++g) {
       shares.push_back(torch::full({batch.levels[0].group_rows[g], 1}, SignalShare(times[g])));
     }
@@ -569,24 +537,24 @@ struct DiffusionTrainer::Torch : StepsRun<Run, Torch> {
   }
 
   // Distances of joints in m: a hip that is off takes all joints along.
-  torch::Tensor JointError(const torch::Tensor& miss) const {
+  Tensor JointError(const Tensor& miss) const {
     constexpr double kSmooth = 1e-12;  // m^2; a root has no derivative at 0
-    const torch::Tensor squares = torch::mm(miss, joints_of_rows).square();
+    const Tensor squares = torch::mm(miss, joints_of_rows).square();
     return (torch::mm(squares, sums_of_joints) + kSmooth).sqrt().mean(1, true);
   }
 
-  torch::Tensor Loss(const torch::Tensor& estimate, const DiffusionBatch& batch) const {
-    const torch::Tensor miss = estimate - batch.truth;
-    const auto weighted = [](const torch::Tensor& by_frame, const torch::Tensor& weights) {
+  Tensor Loss(const Tensor& estimate, const DiffusionBatch& batch) const {
+    const Tensor miss = estimate - batch.truth;
+    const auto weighted = [](const Tensor& by_frame, const Tensor& weights) {
       return (by_frame * weights).sum() / weights.sum();
     };
-    torch::Tensor loss = weighted(miss.abs().mean(1, true), batch.weights);
+    Tensor loss = weighted(miss.abs().mean(1, true), batch.weights);
     if (options.joint_weight > 0.0) {
       loss = loss + options.joint_weight * weighted(JointError(miss), batch.weights);
     }
     if (options.difference_weight > 0.0) {
       const int64_t later = miss.size(0) - 1;
-      const torch::Tensor steps = miss.narrow(0, 1, later) - miss.narrow(0, 0, later);
+      const Tensor steps = miss.narrow(0, 1, later) - miss.narrow(0, 0, later);
       loss = loss + options.difference_weight *
                         weighted(steps.abs().mean(1, true), batch.step_weights.narrow(0, 1, later));
     }
@@ -597,10 +565,9 @@ struct DiffusionTrainer::Torch : StepsRun<Run, Torch> {
     const DiffusionBatch batch = batches.Draw(step);
     std::vector<double> times(batch.sizes.size());
     for (double& time : times) time = kDiffusionTime * torch::rand({1}).item<double>();
-    const torch::Tensor noisy =
-        Noised(batch.truth, Shares(times, batch), torch::randn_like(batch.truth));
+    const Tensor noisy = Noised(batch.truth, Shares(times, batch), torch::randn_like(batch.truth));
     module->train();
-    const torch::Tensor loss = Loss(Estimate(module.get(), noisy, times, batch), batch);
+    const Tensor loss = Loss(EstimateBy(module.get(), noisy, times, batch), batch);
     SetLearningRate(optimizer.get(),
                     options.learning_rate * RateShareToFloor(step, options.steps, options.warm_up));
     Improve(optimizer.get(), loss, module->parameters(), options.clip);
@@ -623,42 +590,34 @@ struct DiffusionTrainer::Torch : StepsRun<Run, Torch> {
     torch::NoGradGuard no_grad;
     const DiffusionBatch batch = held_batches.AsTheyAre(kHeldGroups);
     auto generator = at::detail::createCPUGenerator(kHeldSeed);
-    const torch::Tensor noise = torch::randn(batch.truth.sizes(), generator);
+    const Tensor noise = torch::randn(batch.truth.sizes(), generator);
     const std::vector<double> times(batch.sizes.size(), kHeldTime);
     mean->eval();
-    const torch::Tensor noisy = Noised(batch.truth, Shares(times, batch), noise);
-    return Loss(Estimate(mean.get(), noisy, times, batch), batch).item<double>();
+    const Tensor noisy = Noised(batch.truth, Shares(times, batch), noise);
+    return Loss(EstimateBy(mean.get(), noisy, times, batch), batch).item<double>();
   }
 
   int AllSteps() const override { return options.steps; }
   const char* Stage(int) const override { return "diffusion"; }
+
+  DiffusionNetwork Network() const override { return mean->Network(scales); }
+
+  Eigen::MatrixXf Estimate(const GroupFeatures& features, const Eigen::MatrixXf& noisy,
+                           double t) const override {
+    torch::NoGradGuard no_grad;
+    DiffusionBatch batch = WithoutMaps(features, options.structure);
+    AddMaps(&batch);
+    mean->eval();
+    return ToMatrix(EstimateBy(mean.get(), ToTensor(noisy), {t}, batch)).transpose();
+  }
 };
 
-DiffusionTrainer::DiffusionTrainer(const std::vector<ObservedGroup>& learnt,
-                                   const std::vector<ObservedGroup>& held,
-                                   const DiffusionTrainingOptions& options)
-    : Trainer(std::make_unique<Torch>(learnt, held, options)) {
-  StartTraining(options);
-  Torch& t = As<Torch>();
-  t.module = std::make_shared<DiffusionModule>(options.structure, options.dropout);
-  t.mean = std::make_shared<DiffusionModule>(options.structure, options.dropout);
-  CopyWeights(*t.module, t.mean.get());
-  t.mean->eval();
-  t.optimizer = MakeOptimizer(t.module->parameters(), options.learning_rate, options.weight_decay);
-}
+}  // namespace
 
-DiffusionNetwork DiffusionTrainer::Network() const {
-  const Torch& t = As<Torch>();
-  return t.mean->Network(t.scales);
-}
-
-Eigen::MatrixXf DiffusionTrainer::Estimate(const GroupFeatures& features,
-                                           const Eigen::MatrixXf& noisy, double t) {
-  torch::NoGradGuard no_grad;
-  const Torch& training = As<Torch>();
-  const DiffusionBatch batch = BatchOf(features, training.options.structure);
-  training.mean->eval();
-  return ToMatrix(training.Estimate(training.mean.get(), ToTensor(noisy), {t}, batch)).transpose();
+std::unique_ptr<DiffusionTrainer> DiffusionTrainer::Make(const std::vector<ObservedGroup>& learnt,
+                                                         const std::vector<ObservedGroup>& held,
+                                                         const DiffusionTrainingOptions& options) {
+  return std::make_unique<DiffusionTraining>(learnt, held, options);
 }
 
 }  // namespace pushid

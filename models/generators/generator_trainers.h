@@ -1,6 +1,7 @@
 // models: training of generators, one trainer for each kind (*_trainer_torch.cc).
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "models/generators/diffusion_generator.h"
@@ -22,7 +23,7 @@ namespace pushid {
 // it of frames 2 .. K, and g maps it into what the forecast is given (noisy_input of
 // ParticleStructure), so that the losses of the forecast reach g as well.
 
-// What transitions are charged. likelihood: -log N(p; f, g g^T) with its determinant. drawn: Eq. 6
+// The charge of transitions. likelihood: -log N(p; f, g g^T) with its determinant. drawn: Eq. 6
 // as it is printed, |p - f - g w|^2 with w ~ N(0, 1) drawn, whose minimum is g = 0.
 enum class NoiseLoss { kLikelihood, kDrawn };
 
@@ -56,18 +57,16 @@ struct ParticleTrainingOptions : TrainerOptions {
 inline constexpr int kFirstNoiseStep = 10;  // displacements before are not judged by the noise
 inline constexpr int kFirstTransition = 1;  // of f and g trained together: t = 2 .. K of Eq. 6
 
-class ParticleTrainer : public Trainer {
+// Points of the curve have mean losses of some steps, and that of the held windows (fixed, not
+// jittered) after them.
+class ParticleTrainer : public TrainerOf<ParticleNetwork> {
  public:
-  ParticleTrainer(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
-                  const std::vector<LearntParticles>& held, const ParticleTrainingOptions& options);
-
-  // Mean losses of some steps; of the held windows (fixed, not jittered) at the end.
-  ParticleNetwork Network() const;
-  // What LibTorch forecasts without noise; for comparison with ParticleRollout.
-  Trajectories Forecast(const ObservedMotion& person, int frames) const;
-
- private:
-  struct Torch;
+  static std::unique_ptr<ParticleTrainer> Make(const ParticleLayout& layout,
+                                               const std::vector<LearntParticles>& learnt,
+                                               const std::vector<LearntParticles>& held,
+                                               const ParticleTrainingOptions& options);
+  // LibTorch's forecast without noise; for comparison with ParticleRollout.
+  virtual Trajectories Forecast(const ObservedMotion& person, int frames) const = 0;
 };
 
 // Training of siMLPe, on the windows of particles and by their losses: mean distance of joints, of
@@ -85,17 +84,14 @@ struct SimlpeTrainingOptions : ParticleTrainingOptions {
   double weight_decay = 1e-4;
 };
 
-class SimlpeTrainer : public Trainer {
+class SimlpeTrainer : public TrainerOf<SimlpeNetwork> {
  public:
-  SimlpeTrainer(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
-                const std::vector<LearntParticles>& held, const SimlpeTrainingOptions& options);
-
-  SimlpeNetwork Network() const;
-  // What LibTorch forecasts; for comparison with SimlpeNetwork.
-  Trajectories Forecast(const Trajectories& seen) const;
-
- private:
-  struct Torch;
+  static std::unique_ptr<SimlpeTrainer> Make(const ParticleLayout& layout,
+                                             const std::vector<LearntParticles>& learnt,
+                                             const std::vector<LearntParticles>& held,
+                                             const SimlpeTrainingOptions& options);
+  // LibTorch's forecast; for comparison with SimlpeNetwork.
+  virtual Trajectories Forecast(const Trajectories& seen) const = 0;
 };
 
 // Training of the diffusion network.
@@ -134,18 +130,15 @@ struct DiffusionTrainingOptions : TrainerOptions {
   double dt = 1.0 / 60.0;        // s
 };
 
-class DiffusionTrainer : public Trainer {
+// Held groups are judged in the same noise always; Network() has the mean weights.
+class DiffusionTrainer : public TrainerOf<DiffusionNetwork> {
  public:
-  DiffusionTrainer(const std::vector<ObservedGroup>& learnt, const std::vector<ObservedGroup>& held,
-                   const DiffusionTrainingOptions& options);
-
-  // Mean losses of some steps; of the held groups, always in the same noise, at the end.
-  DiffusionNetwork Network() const;  // of the mean weights
-  // What LibTorch estimates from this noisy motion; for comparison with GroupDenoiser.
-  Eigen::MatrixXf Estimate(const GroupFeatures& features, const Eigen::MatrixXf& noisy, double t);
-
- private:
-  struct Torch;
+  static std::unique_ptr<DiffusionTrainer> Make(const std::vector<ObservedGroup>& learnt,
+                                                const std::vector<ObservedGroup>& held,
+                                                const DiffusionTrainingOptions& options);
+  // LibTorch's estimate from this noisy motion; for comparison with GroupDenoiser.
+  virtual Eigen::MatrixXf Estimate(const GroupFeatures& features, const Eigen::MatrixXf& noisy,
+                                   double t) const = 0;
 };
 
 }  // namespace pushid

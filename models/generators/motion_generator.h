@@ -15,11 +15,11 @@
 
 namespace pushid {
 
-// What is seen of a person, and what acts on them.
+// The seen motion of a person, and what acts on them.
 struct ObservedMotion {
   Trajectories frames;
   Eigen::MatrixXf controls = {};  // a column per frame, observed and to come; or empty
-  // What people who see each other are told of one another, and what physics say of the hip.
+  // For people who see each other, and for physics beside them.
   Eigen::Vector2f place = Eigen::Vector2f::Zero();  // of the frames' origin, m, world
   float mass = 0.0f;                                // kg
   Eigen::MatrixXf pendulum = {};  // where physics have the hip, as in frames; or empty

@@ -15,69 +15,10 @@ using Array = Eigen::ArrayXXf;
 
 Array Sigmoid(const Eigen::Ref<const Array>& x) { return 1.0f / (1.0f + (-x).exp()); }
 
-Eigen::MatrixXf Apply(const DenseLayer& layer, const Eigen::MatrixXf& inputs) {
-  return (layer.weights * inputs).colwise() + layer.bias;
-}
-
-void ListTensors(const std::string& name, int coordinates, ParticleNetwork* network,
-                 TensorFields* fields) {
-  const ParticleStructure& structure = network->structure;
-  fields->Matrix(name + ".pose_mean", coordinates, 1, &network->pose_mean);
-  fields->Matrix(name + ".pose_spread", coordinates, 1, &network->pose_spread);
-  fields->Matrix(name + ".step_spread", coordinates, 1, &network->step_spread);
-  fields->Layer(name + ".input", structure.NumInputs(coordinates), structure.NumGates(),
-                &network->input);
-  fields->Layer(name + ".recurrent", kParticleHidden, structure.NumGates(), &network->recurrent);
-  fields->Layer(name + ".drift", kParticleHidden, coordinates, &network->drift);
-  fields->Layer(name + ".noise", kParticleHidden, coordinates, &network->noise);
-  if (structure.noisy_input) {
-    fields->Layer(name + ".noise_below", kParticleHidden, coordinates * coordinates,
-                  &network->noise_below);
-  } else {
-    fields->Matrix(name + ".noise_mix", coordinates, coordinates, &network->noise_mix);
-  }
-  if (structure.corrected_frames > 0) {
-    const int terms = kCorrectionTerms * coordinates;
-    fields->Layer(name + ".correction_hidden", kParticleHidden + terms, kCorrectionHidden,
-                  &network->correction_hidden);
-    fields->Layer(name + ".correction", kCorrectionHidden, terms, &network->correction);
-  }
-  if (structure.HasSkip()) {
-    fields->Matrix(name + ".skip", coordinates, kSkipSteps * coordinates, &network->skip);
-  }
-}
-
 std::vector<Trajectories> Empty(const std::vector<ObservedMotion>& people, int count, int frames) {
   return std::vector<Trajectories>(people.size() * static_cast<size_t>(count),
                                    Trajectories::Zero(people.front().frames.rows(), frames));
 }
-
-// Noise with a memory; what it adds to the likelihood that white noise of these values would have.
-class ColouredNoise {
- public:
-  ColouredNoise(Eigen::Index rows, Eigen::Index columns, const ParticleGeneratorOptions& options)
-      : memory_(static_cast<float>(options.noise_memory)),
-        noise_(Eigen::MatrixXf::Zero(rows, columns)) {}
-
-  const Eigen::MatrixXf& Next(const NormalSource& normal) {
-    Eigen::MatrixXf fresh(noise_.rows(), noise_.cols());
-    for (float& value : fresh.reshaped()) value = static_cast<float>(normal());
-    const float share = is_first_ ? 1.0f : std::sqrt(1.0f - memory_ * memory_);
-    noise_ = memory_ * noise_ + share * fresh;
-    is_first_ = false;
-    const float constant = static_cast<float>(noise_.rows()) * std::log(share);
-    change_ = 0.5f * (noise_.colwise().squaredNorm() - fresh.colwise().squaredNorm()).transpose();
-    change_.array() -= constant;
-    return noise_;
-  }
-  const Eigen::VectorXf& log_likelihood_change() const { return change_; }
-
- private:
-  float memory_;
-  bool is_first_ = true;
-  Eigen::MatrixXf noise_;
-  Eigen::VectorXf change_;
-};
 
 // `last`: the column of the last observed frame.
 Eigen::VectorXf Features(const Trajectories& motion, Eigen::Index last) {
@@ -97,21 +38,6 @@ Eigen::MatrixXf Normed(const Eigen::MatrixXf& values, const SimlpeBlock& block) 
   normed.array().rowwise() /= (variance.array() + kNormSmooth).sqrt();
   normed.array().colwise() *= block.scale.array();
   return normed.colwise() + block.shift;
-}
-
-void ListTensors(const std::string& name, int observed, int coordinates, SimlpeNetwork* network,
-                 TensorFields* fields) {
-  fields->Matrix(name + ".pose_mean", coordinates, 1, &network->pose_mean);
-  fields->Positive(name + ".pose_spread", coordinates, &network->pose_spread);
-  fields->Layer(name + ".input", coordinates, coordinates, &network->input);
-  fields->Layer(name + ".output", coordinates, coordinates, &network->output);
-  for (size_t i = 0; i < network->blocks.size(); ++i) {
-    SimlpeBlock& block = network->blocks[i];
-    const std::string of_block = name + ".block" + std::to_string(i);
-    fields->Layer(of_block + ".mix", observed, observed, &block.mix);
-    fields->Matrix(of_block + ".scale", coordinates, 1, &block.scale);
-    fields->Matrix(of_block + ".shift", coordinates, 1, &block.shift);
-  }
 }
 
 }  // namespace
@@ -148,14 +74,14 @@ void ParticleRollout::PrepareCorrection() {
     const Eigen::MatrixXf terms = seen * cosines.transpose();
     features.col(n).tail(kCorrectionTerms * size) = terms.reshaped();
   }
-  const Array inner = Apply(network_.correction_hidden, features);
+  const Array inner = AppliedByEigen(network_.correction_hidden, features);
   const Eigen::MatrixXf elu = (inner > 0.0f).select(inner, inner.exp() - 1.0f);
-  correction_ = Apply(network_.correction, elu);
+  correction_ = AppliedByEigen(network_.correction, elu);
 }
 
 Eigen::MatrixXf ParticleRollout::Mapped(const Eigen::MatrixXf& noise) {
   const Array log_noise =
-      Apply(network_.noise, hidden_).array().min(kLargestLogNoise).max(kLeastLogNoise);
+      AppliedByEigen(network_.noise, hidden_).array().min(kLargestLogNoise).max(kLeastLogNoise);
   const float constant = 0.5f * std::log(2.0f * static_cast<float>(M_PI));
   log_likelihood_ -=
       (log_noise + 0.5f * noise.array().square() + constant).colwise().sum().matrix().transpose();
@@ -166,7 +92,7 @@ Eigen::MatrixXf ParticleRollout::Mapped(const Eigen::MatrixXf& noise) {
   mapped.array() *= log_noise.exp();
   if (!network_.structure.noisy_input) return mapped;
   using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const Eigen::MatrixXf below = Apply(network_.noise_below, hidden_);
+  const Eigen::MatrixXf below = AppliedByEigen(network_.noise_below, hidden_);
   for (Eigen::Index n = 0; n < noise.cols(); ++n) {
     const Eigen::Map<const Rows> g(below.col(n).data(), noise.rows(), noise.rows());
     mapped.col(n) += g.triangularView<Eigen::StrictlyLower>() * noise.col(n);
@@ -198,7 +124,8 @@ void ParticleRollout::Observe(const Eigen::MatrixXf& pose, const NormalSource* n
     inputs += Mapped(noise);
   }
   ++frame_;
-  const Array in = Apply(network_.input, inputs), own = Apply(network_.recurrent, hidden_);
+  const Array in = AppliedByEigen(network_.input, inputs),
+              own = AppliedByEigen(network_.recurrent, hidden_);
   const int h = kParticleHidden;
   if (structure.lstm) {
     const Array gates = in + own;
@@ -214,7 +141,7 @@ void ParticleRollout::Observe(const Eigen::MatrixXf& pose, const NormalSource* n
 }
 
 const Eigen::MatrixXf& ParticleRollout::Step(const Eigen::MatrixXf* noise) {
-  Eigen::MatrixXf next = Apply(network_.drift, hidden_);
+  Eigen::MatrixXf next = AppliedByEigen(network_.drift, hidden_);
   if (network_.structure.HasSkip()) next.noalias() += network_.skip * history_;
   if (noise != nullptr) {
     log_likelihood_.setZero();
@@ -238,39 +165,44 @@ const Eigen::MatrixXf& ParticleRollout::Step(const Eigen::MatrixXf* noise) {
 }
 
 Eigen::MatrixXf SeenCosines(int observed) {
-  Eigen::MatrixXf cosines(kCorrectionTerms, observed);
-  for (int k = 0; k < kCorrectionTerms; ++k) {
-    for (int t = 0; t < observed; ++t) {
-      cosines(k, t) =
-          static_cast<float>(std::sqrt(2.0 / observed) * std::cos(M_PI * k * (t + 0.5) / observed));
-    }
-  }
-  return cosines;
+  return Eigen::MatrixXf::NullaryExpr(kCorrectionTerms, observed, [=](double k, double t) {
+    return static_cast<float>(std::sqrt(2.0 / observed) *
+                              std::cos(M_PI * k * (t + 0.5) / observed));
+  });
 }
 
 Eigen::MatrixXf CorrectionSines(int frames) {
-  Eigen::MatrixXf sines(kCorrectionTerms, frames);
-  for (int k = 0; k < kCorrectionTerms; ++k) {
-    for (int u = 1; u <= frames; ++u) {
-      sines(k, u - 1) = static_cast<float>(std::sin(M_PI * (k + 0.5) * u / frames));
-    }
+  return Eigen::MatrixXf::NullaryExpr(kCorrectionTerms, frames, [=](double k, double before) {
+    return static_cast<float>(std::sin(M_PI * (k + 0.5) * (before + 1.0) / frames));
+  });
+}
+
+void ListTensors(const std::string& prefix, ParticleNetwork* network, TensorFields* fields) {
+  const int coordinates = network->num_coordinates();
+  const ParticleStructure& structure = network->structure;
+  fields->Matrix(prefix + "pose_mean", coordinates, 1, &network->pose_mean);
+  fields->Matrix(prefix + "pose_spread", coordinates, 1, &network->pose_spread);
+  fields->Matrix(prefix + "step_spread", coordinates, 1, &network->step_spread);
+  fields->Layer(prefix + "input", structure.NumInputs(coordinates), structure.NumGates(),
+                &network->input);
+  fields->Layer(prefix + "recurrent", kParticleHidden, structure.NumGates(), &network->recurrent);
+  fields->Layer(prefix + "drift", kParticleHidden, coordinates, &network->drift);
+  fields->Layer(prefix + "noise", kParticleHidden, coordinates, &network->noise);
+  if (structure.noisy_input) {
+    fields->Layer(prefix + "noise_below", kParticleHidden, coordinates * coordinates,
+                  &network->noise_below);
+  } else {
+    fields->Matrix(prefix + "noise_mix", coordinates, coordinates, &network->noise_mix);
   }
-  return sines;
-}
-
-void AddTensors(const std::string& name, const ParticleNetwork& network, TensorList* tensors) {
-  ParticleNetwork written = network;
-  TensorFields fields(tensors);
-  ListTensors(name, network.num_coordinates(), &written, &fields);
-}
-
-ParticleNetwork TakeParticles(const std::string& name, const ParticleStructure& structure,
-                              int coordinates, TensorReader* reader) {
-  ParticleNetwork network;
-  network.structure = structure;
-  TensorFields fields(reader);
-  ListTensors(name, coordinates, &network, &fields);
-  return network;
+  if (structure.corrected_frames > 0) {
+    const int terms = kCorrectionTerms * coordinates;
+    fields->Layer(prefix + "correction_hidden", kParticleHidden + terms, kCorrectionHidden,
+                  &network->correction_hidden);
+    fields->Layer(prefix + "correction", kCorrectionHidden, terms, &network->correction);
+  }
+  if (structure.HasSkip()) {
+    fields->Matrix(prefix + "skip", coordinates, kSkipSteps * coordinates, &network->skip);
+  }
 }
 
 ParticleGenerator::ParticleGenerator(ParticleLayout layout, std::vector<ParticleNetwork> members,
@@ -314,9 +246,12 @@ void ParticleGenerator::Blend(const std::vector<ObservedMotion>& people,
             partners_.ridge.Forecast(seen).leftCols(frames), members, &(*motions)[n]);
     }
     if (options_.simlpe_share > 0.0) {
+      Trajectories sum = Trajectories::Zero(seen.rows(), frames);
+      for (const SimlpeNetwork& one : partners_.simlpe) {
+        sum += one.Forecast(seen, static_cast<int>(frames));
+      }
       blend(static_cast<float>(options_.simlpe_share) * (1.0f - fading),
-            MeanForecast(partners_.simlpe, seen, static_cast<int>(frames)), members,
-            &(*motions)[n]);
+            sum / static_cast<float>(partners_.simlpe.size()), members, &(*motions)[n]);
     }
   }
 }
@@ -353,10 +288,22 @@ std::vector<std::vector<SampledFuture>> ParticleGenerator::Sample(
     const bool goes_in = members_[m].structure.noisy_input;
     ParticleRollout rollout(members_[m], people, share, &jitter, goes_in ? &normal : nullptr);
     Eigen::VectorXf log_likelihood = rollout.log_likelihood();
-    ColouredNoise noise(layout_.num_coordinates(), log_likelihood.size(), options_);
+    const float memory = static_cast<float>(options_.noise_memory);
+    Eigen::MatrixXf noise = Eigen::MatrixXf::Zero(jitter.rows(), jitter.cols()), fresh = noise;
     for (int t = 0; t < frames; ++t) {
-      const Eigen::MatrixXf& poses = rollout.Step(goes_in ? nullptr : &noise.Next(normal));
-      if (!goes_in) log_likelihood += rollout.log_likelihood() + noise.log_likelihood_change();
+      const float fresh_share = t == 0 ? 1.0f : std::sqrt(1.0f - memory * memory);
+      if (!goes_in) {
+        for (float& value : fresh.reshaped()) value = static_cast<float>(normal());
+        noise = memory * noise + fresh_share * fresh;
+      }
+      const Eigen::MatrixXf& poses = rollout.Step(goes_in ? nullptr : &noise);
+      if (!goes_in) {
+        // Beside the likelihood that white noise of these values would have.
+        Eigen::VectorXf change =
+            0.5f * (noise.colwise().squaredNorm() - fresh.colwise().squaredNorm()).transpose();
+        change.array() -= static_cast<float>(noise.rows()) * std::log(fresh_share);
+        log_likelihood += rollout.log_likelihood() + change;
+      }
       for (size_t i = 0; i < motions.size(); ++i) {
         motions[i].col(t) = poses.col(static_cast<Eigen::Index>(i));
       }
@@ -431,27 +378,20 @@ Trajectories SimlpeNetwork::Forecast(const Trajectories& seen, int frames) const
   return motion.middleCols(given, frames);
 }
 
-void AddTensors(const std::string& name, const SimlpeNetwork& network, TensorList* tensors) {
-  SimlpeNetwork written = network;
-  TensorFields fields(tensors);
-  ListTensors(name, network.observed(), static_cast<int>(network.pose_mean.size()), &written,
-              &fields);
-}
-
-SimlpeNetwork TakeSimlpe(const std::string& name, int observed, int coordinates, int blocks,
-                         TensorReader* reader) {
-  SimlpeNetwork network;
-  network.blocks.resize(static_cast<size_t>(blocks));
-  TensorFields fields(reader);
-  ListTensors(name, observed, coordinates, &network, &fields);
-  return network;
-}
-
-Trajectories MeanForecast(const std::vector<SimlpeNetwork>& members, const Trajectories& seen,
-                          int frames) {
-  Trajectories sum = Trajectories::Zero(seen.rows(), frames);
-  for (const SimlpeNetwork& member : members) sum += member.Forecast(seen, frames);
-  return sum / static_cast<float>(members.size());
+void ListTensors(const std::string& prefix, SimlpeNetwork* network, TensorFields* fields) {
+  const int observed = network->observed();
+  const int coordinates = static_cast<int>(network->pose_mean.size());
+  fields->Matrix(prefix + "pose_mean", coordinates, 1, &network->pose_mean);
+  fields->Positive(prefix + "pose_spread", coordinates, &network->pose_spread);
+  fields->Layer(prefix + "input", coordinates, coordinates, &network->input);
+  fields->Layer(prefix + "output", coordinates, coordinates, &network->output);
+  for (size_t i = 0; i < network->blocks.size(); ++i) {
+    SimlpeBlock& block = network->blocks[i];
+    const std::string of_block = prefix + "block" + std::to_string(i);
+    fields->Layer(of_block + ".mix", observed, observed, &block.mix);
+    fields->Matrix(of_block + ".scale", coordinates, 1, &block.scale);
+    fields->Matrix(of_block + ".shift", coordinates, 1, &block.shift);
+  }
 }
 
 }  // namespace pushid

@@ -35,7 +35,7 @@ inline constexpr int kParticleHidden = 256;
 //   log g   = V h_t + c, held within -6 .. 2           noise of every coordinate
 //   S_{t+1} = S_t + step_spread p_{t+1}                the pose operator, Eq. 7-9: an exact sum
 //
-// What the sum gets wrong over a whole second is corrected at once, and is not fed back:
+// The error of the sum over a whole second is corrected at once, and is not fed back:
 //   S_{T+u} += pose_spread sum_{k<6} c_k sin(pi (k + 1/2) u / U),   u = 1 .. U frames of forecast
 //   c = W' elu(V' [h_T, d] + b') + b''   d: the first six cosine coefficients of the scaled poses
 // zero at the last pose seen, and before training. Of trainings of U frames; later ones keep the
@@ -129,9 +129,8 @@ class ParticleRollout {
 Eigen::MatrixXf SeenCosines(int observed);
 Eigen::MatrixXf CorrectionSines(int frames);
 
-void AddTensors(const std::string& name, const ParticleNetwork& network, TensorList* tensors);
-ParticleNetwork TakeParticles(const std::string& name, const ParticleStructure& structure,
-                              int coordinates, TensorReader* reader);
+// The network has its structure and number of coordinates.
+void ListTensors(const std::string& prefix, ParticleNetwork* network, TensorFields* fields);
 
 // The linear forecast: ridge regression from the last pose and the last displacements to
 // all future poses at once. What any network has to beat, and a good partner in a blend.
@@ -194,15 +193,11 @@ struct SimlpeNetwork {
 
 inline constexpr float kNormSmooth = 1e-5f;  // added to the variance
 
-void AddTensors(const std::string& name, const SimlpeNetwork& network, TensorList* tensors);
-SimlpeNetwork TakeSimlpe(const std::string& name, int observed, int coordinates, int blocks,
-                         TensorReader* reader);
+// The network has its numbers of blocks, coordinates and observed frames.
+void ListTensors(const std::string& prefix, SimlpeNetwork* network, TensorFields* fields);
 
-// The mean of several seeds.
-Trajectories MeanForecast(const std::vector<SimlpeNetwork>& members, const Trajectories& seen,
-                          int frames);
-
-// What is blended with the networks; empty where its share is 0.
+// Partners of the networks in the blend; empty where the share is 0. siMLPe: of several seeds, in
+// the mean.
 struct BlendPartners {
   RidgeForecast ridge;
   std::vector<SimlpeNetwork> simlpe = {};
@@ -234,7 +229,7 @@ class ParticleGenerator : public MotionGenerator {
                                                  const NormalSource& normal) const override;
 
  private:
-  // What the members forecast in the mean, without bones.
+  // The mean of the members' forecasts, without bones.
   std::vector<Trajectories> MeanOfMembers(const std::vector<ObservedMotion>& people,
                                           int frames) const;
   void Blend(const std::vector<ObservedMotion>& people, std::vector<Trajectories>* motions) const;

@@ -12,21 +12,19 @@ namespace pushid {
 // Windows to learn from are tensors of [batch, frame, coordinate].
 
 // sum_j g^ij w^j of `draws` w. log_noise: log g^ii. below: NoiseBelow.
-inline torch::Tensor MappedNoise(const torch::Tensor& log_noise, const torch::Tensor& below,
-                                 const torch::Tensor& draws) {
-  const torch::Tensor own = log_noise.exp() * draws;
+inline Tensor MappedNoise(const Tensor& log_noise, const Tensor& below, const Tensor& draws) {
+  const Tensor own = log_noise.exp() * draws;
   if (!below.defined()) return own;
   return own + torch::matmul(below.tril(-1), draws.unsqueeze(-1)).squeeze(-1);
 }
 
 // The loss of transitions, by coordinate (NoiseLoss): `misses` of the drift, p - f; drawn: w.
-inline torch::Tensor TransitionLoss(NoiseLoss loss, const torch::Tensor& misses,
-                                    const torch::Tensor& log_noise, const torch::Tensor& below,
-                                    const torch::Tensor& drawn) {
+inline Tensor TransitionLoss(NoiseLoss loss, const Tensor& misses, const Tensor& log_noise,
+                             const Tensor& below, const Tensor& drawn) {
   if (loss == NoiseLoss::kDrawn) return (misses - MappedNoise(log_noise, below, drawn)).square();
   if (!below.defined()) return log_noise + 0.5 * misses.square() * (-2.0 * log_noise).exp();
-  const torch::Tensor g = below.tril(-1) + torch::diag_embed(log_noise.exp());
-  const torch::Tensor w = torch::linalg_solve_triangular(g, misses.unsqueeze(-1), false);
+  const Tensor g = below.tril(-1) + torch::diag_embed(log_noise.exp());
+  const Tensor w = torch::linalg_solve_triangular(g, misses.unsqueeze(-1), false);
   return log_noise + 0.5 * w.squeeze(-1).square();
 }
 
@@ -49,7 +47,7 @@ class ParticleModule : public torch::nn::Module {
     drift_ = register_parameter("drift", torch::zeros({size_, kParticleHidden}));
     drift_bias_ = register_parameter("drift_bias", torch::zeros({size_}));
     if (structure_.HasSkip()) {
-      const torch::Tensor older = torch::zeros({size_, (kSkipSteps - 1) * size_});
+      const Tensor older = torch::zeros({size_, (kSkipSteps - 1) * size_});
       skip_ = register_parameter("skip", torch::cat({torch::eye(size_), older}, 1));
     }
     if (structure_.corrected_frames > 0) {
@@ -71,9 +69,9 @@ class ParticleModule : public torch::nn::Module {
     torch::nn::init::zeros_(noise_below_->bias);
   }
 
-  std::vector<torch::Tensor> DriftParameters() const {
-    std::vector<torch::Tensor> all = {input_,          recurrent_, input_bias_,
-                                      recurrent_bias_, drift_,     drift_bias_};
+  std::vector<Tensor> DriftParameters() const {
+    std::vector<Tensor> all = {input_,          recurrent_, input_bias_,
+                               recurrent_bias_, drift_,     drift_bias_};
     if (structure_.HasSkip()) all.push_back(skip_);
     if (structure_.corrected_frames > 0) {
       for (const auto& layer : {correction_hidden_, correction_}) {
@@ -82,7 +80,7 @@ class ParticleModule : public torch::nn::Module {
     }
     return all;
   }
-  std::vector<torch::Tensor> NoiseParameters() const {
+  std::vector<Tensor> NoiseParameters() const {
     if (!structure_.noisy_input) return {noise_, noise_bias_};
     return {noise_, noise_bias_, noise_below_->weight, noise_below_->bias};
   }
@@ -90,24 +88,24 @@ class ParticleModule : public torch::nn::Module {
   // Frames forecast after the first `observed`, [batch, frame, coordinate]. jitter: [batch, 1,
   // coordinate], in spreads. noise: w_1:K of noisy_input, [batch, frame, coordinate]; undefined:
   // none goes in.
-  torch::Tensor Forecast(const torch::Tensor& batch, const torch::Tensor& jitter, int observed,
-                         int predicted, const torch::Tensor& noise = {}) const {
-    const torch::Tensor past = batch.narrow(1, 0, observed);
-    const torch::Tensor steps = Steps(past);
+  Tensor Forecast(const Tensor& batch, const Tensor& jitter, int observed, int predicted,
+                  const Tensor& noise = {}) const {
+    const Tensor past = batch.narrow(1, 0, observed);
+    const Tensor steps = Steps(past);
     CellState state = Run(Inputs(steps, past, jitter), noise).second;
-    const torch::Tensor correction = Correction(past, state.hidden, jitter, predicted);
-    torch::Tensor pose = past.select(1, observed - 1), history = LastSteps(steps, observed);
-    const torch::Tensor still = jitter.squeeze(1);
-    std::vector<torch::Tensor> poses;
+    const Tensor correction = Correction(past, state.hidden, jitter, predicted);
+    Tensor pose = past.select(1, observed - 1), history = LastSteps(steps, observed);
+    const Tensor still = jitter.squeeze(1);
+    std::vector<Tensor> poses;
     for (int t = 0; t < predicted; ++t) {
       if (t > 0) {
-        const torch::Tensor last = history.narrow(1, 0, size_);
+        const Tensor last = history.narrow(1, 0, size_);
         state = Advanced(Inputs(last, pose, still), state);
       }
-      const torch::Tensor next = Drift(state.hidden, history);
-      const torch::Tensor moved =
+      const Tensor next = Drift(state.hidden, history);
+      const Tensor moved =
           structure_.summed ? pose + step_spread_ * next : pose_mean_ + pose_spread_ * next;
-      const torch::Tensor step = structure_.summed ? next : (moved - pose) / step_spread_;
+      const Tensor step = structure_.summed ? next : (moved - pose) / step_spread_;
       history = torch::cat({step, history.narrow(1, 0, (kSkipSteps - 1) * size_)}, 1);
       pose = moved;
       poses.push_back(pose);
@@ -117,32 +115,31 @@ class ParticleModule : public torch::nn::Module {
 
   // On the true motion: what the drift misses, e = p_{t+1} - f, and the hidden states, for t from
   // `first` - 1 on. drift_learns: off: no gradients reach the drift and the cell.
-  std::pair<torch::Tensor, torch::Tensor> Misses(const torch::Tensor& batch,
-                                                 const torch::Tensor& jitter, int first,
-                                                 bool drift_learns = false) const {
+  std::pair<Tensor, Tensor> Misses(const Tensor& batch, const Tensor& jitter, int first,
+                                   bool drift_learns = false) const {
     torch::AutoGradMode gradients(drift_learns && torch::GradMode::is_enabled());
-    const torch::Tensor steps = Steps(batch);
+    const Tensor steps = Steps(batch);
     const int64_t frames = batch.size(1);
-    const torch::Tensor before = batch.narrow(1, 0, frames - 1);
-    const torch::Tensor hidden = Run(Inputs(steps.narrow(1, 0, frames - 1), before, jitter)).first;
-    std::vector<torch::Tensor> misses;
+    const Tensor before = batch.narrow(1, 0, frames - 1);
+    const Tensor hidden = Run(Inputs(steps.narrow(1, 0, frames - 1), before, jitter)).first;
+    std::vector<Tensor> misses;
     for (int64_t t = first; t < frames; ++t) {
-      const torch::Tensor drift = Drift(hidden.select(1, t - 1), LastSteps(steps, t));
-      const torch::Tensor truth =
+      const Tensor drift = Drift(hidden.select(1, t - 1), LastSteps(steps, t));
+      const Tensor truth =
           structure_.summed ? steps.select(1, t) : (batch.select(1, t) - pose_mean_) / pose_spread_;
       misses.push_back(truth - drift);
     }
     return {torch::stack(misses, 1), hidden.narrow(1, first - 1, frames - first)};
   }
 
-  torch::Tensor LogNoise(const torch::Tensor& hidden) const {
+  Tensor LogNoise(const Tensor& hidden) const {
     return torch::clamp(torch::matmul(hidden, noise_.t()) + noise_bias_, kLeastLogNoise,
                         kLargestLogNoise);
   }
 
   // g^ij of states, of which only those below the diagonal are meant, [.., i, j]; undefined where g
   // is diagonal.
-  torch::Tensor NoiseBelow(const torch::Tensor& hidden) const {
+  Tensor NoiseBelow(const Tensor& hidden) const {
     if (!structure_.noisy_input) return {};
     std::vector<int64_t> shape = hidden.sizes().vec();
     shape.back() = size_, shape.push_back(size_);
@@ -180,14 +177,14 @@ class ParticleModule : public torch::nn::Module {
 
  private:
   // p_t of every frame; the first has none.
-  torch::Tensor Steps(const torch::Tensor& frames) const {
+  Tensor Steps(const Tensor& frames) const {
     const int64_t count = frames.size(1);
-    const torch::Tensor moved = (frames.narrow(1, 1, count - 1) - frames.narrow(1, 0, count - 1));
+    const Tensor moved = (frames.narrow(1, 1, count - 1) - frames.narrow(1, 0, count - 1));
     return torch::cat({torch::zeros_like(frames.narrow(1, 0, 1)), moved / step_spread_}, 1);
   }
   // The last nine before frame `end`, newest first, as far as there are any.
-  torch::Tensor LastSteps(const torch::Tensor& steps, int64_t end) const {
-    std::vector<torch::Tensor> last;
+  Tensor LastSteps(const Tensor& steps, int64_t end) const {
+    std::vector<Tensor> last;
     for (int64_t k = 1; k <= kSkipSteps; ++k) {
       last.push_back(end - k >= 0 ? steps.select(1, end - k)
                                   : torch::zeros_like(steps.select(1, 0)));
@@ -195,36 +192,34 @@ class ParticleModule : public torch::nn::Module {
     return torch::cat(last, 1);
   }
   // Inputs of all frames, or of one.
-  torch::Tensor Inputs(const torch::Tensor& steps, const torch::Tensor& frames,
-                       const torch::Tensor& jitter) const {
-    std::vector<torch::Tensor> parts;
+  Tensor Inputs(const Tensor& steps, const Tensor& frames, const Tensor& jitter) const {
+    std::vector<Tensor> parts;
     if (structure_.particles) parts.push_back(steps);
     if (structure_.poses) parts.push_back((frames - pose_mean_) / pose_spread_ + jitter);
     return torch::cat(parts, -1);
   }
   // Correction of all forecast frames, [batch, frame, coordinate]; hidden: after the last seen one.
-  torch::Tensor Correction(const torch::Tensor& past, const torch::Tensor& hidden,
-                           const torch::Tensor& jitter, int predicted) const {
+  Tensor Correction(const Tensor& past, const Tensor& hidden, const Tensor& jitter,
+                    int predicted) const {
     if (structure_.corrected_frames == 0) return torch::zeros({1});
-    const torch::Tensor seen = (past - pose_mean_) / pose_spread_ + jitter;
-    const torch::Tensor cosines = ToTensor(SeenCosines(static_cast<int>(past.size(1)))).t();
-    const torch::Tensor features = torch::cat({hidden, torch::matmul(cosines, seen).flatten(1)}, 1);
-    const torch::Tensor inner = torch::elu(
+    const Tensor seen = (past - pose_mean_) / pose_spread_ + jitter;
+    const Tensor cosines = ToTensor(SeenCosines(static_cast<int>(past.size(1)))).t();
+    const Tensor features = torch::cat({hidden, torch::matmul(cosines, seen).flatten(1)}, 1);
+    const Tensor inner = torch::elu(
         torch::addmm(correction_hidden_->bias, features, correction_hidden_->weight.t()));
-    const torch::Tensor terms = torch::addmm(correction_->bias, inner, correction_->weight.t())
-                                    .reshape({past.size(0), kCorrectionTerms, size_});
-    const torch::Tensor frames =
-        torch::arange(predicted).clamp_max(structure_.corrected_frames - 1);
+    const Tensor terms = torch::addmm(correction_->bias, inner, correction_->weight.t())
+                             .reshape({past.size(0), kCorrectionTerms, size_});
+    const Tensor frames = torch::arange(predicted).clamp_max(structure_.corrected_frames - 1);
     return pose_spread_ * torch::matmul(sines_.index_select(0, frames), terms);
   }
-  torch::Tensor Drift(const torch::Tensor& hidden, const torch::Tensor& history) const {
-    torch::Tensor drift = torch::addmm(drift_bias_, hidden, drift_.t());
+  Tensor Drift(const Tensor& hidden, const Tensor& history) const {
+    Tensor drift = torch::addmm(drift_bias_, hidden, drift_.t());
     return structure_.HasSkip() ? torch::addmm(drift, history, skip_.t()) : drift;
   }
   struct CellState {
-    torch::Tensor hidden, memory;
+    Tensor hidden, memory;
   };
-  CellState Advanced(const torch::Tensor& input, const CellState& from) const {
+  CellState Advanced(const Tensor& input, const CellState& from) const {
     if (!structure_.lstm) {
       return {torch::gru_cell(input, from.hidden, input_, recurrent_, input_bias_, recurrent_bias_),
               {}};
@@ -234,19 +229,18 @@ class ParticleModule : public torch::nn::Module {
     return {hidden, memory};
   }
   // The cell over all frames: all hidden states, and the last state. noise: as in Forecast.
-  std::pair<torch::Tensor, CellState> Run(const torch::Tensor& inputs,
-                                          const torch::Tensor& noise = {}) const {
-    const torch::Tensor zero = torch::zeros({inputs.size(0), kParticleHidden});
+  std::pair<Tensor, CellState> Run(const Tensor& inputs, const Tensor& noise = {}) const {
+    const Tensor zero = torch::zeros({inputs.size(0), kParticleHidden});
     if (!structure_.lstm && !noise.defined()) {
-      const std::vector<torch::Tensor> weights = {input_, recurrent_, input_bias_, recurrent_bias_};
+      const std::vector<Tensor> weights = {input_, recurrent_, input_bias_, recurrent_bias_};
       const auto [all, last] =
           torch::gru(inputs, zero.unsqueeze(0), weights, true, 1, 0.0, is_training(), false, true);
       return {all, {last.squeeze(0), {}}};
     }
     CellState state = {zero, zero};
-    std::vector<torch::Tensor> all;
+    std::vector<Tensor> all;
     for (int64_t t = 0; t < inputs.size(1); ++t) {
-      torch::Tensor input = inputs.select(1, t);
+      Tensor input = inputs.select(1, t);
       if (noise.defined()) {
         input = input +
                 MappedNoise(LogNoise(state.hidden), NoiseBelow(state.hidden), noise.select(1, t));
@@ -259,51 +253,15 @@ class ParticleModule : public torch::nn::Module {
 
   ParticleStructure structure_;
   int64_t size_;
-  torch::Tensor pose_mean_, pose_spread_, step_spread_;
-  torch::Tensor input_, recurrent_, input_bias_, recurrent_bias_, drift_, drift_bias_, skip_;
-  torch::Tensor noise_, noise_bias_, noise_mix_;
+  Tensor pose_mean_, pose_spread_, step_spread_;
+  Tensor input_, recurrent_, input_bias_, recurrent_bias_, drift_, drift_bias_, skip_;
+  Tensor noise_, noise_bias_, noise_mix_;
   torch::nn::Linear noise_below_{nullptr};
   torch::nn::Linear correction_hidden_{nullptr}, correction_{nullptr};
-  torch::Tensor sines_;  // of the correction, a row a frame
+  Tensor sines_;  // of the correction, a row a frame
 };
 
-class ParticleWindows {
- public:
-  ParticleWindows(const ParticleLayout& layout, const std::vector<LearntParticles>& motions,
-                  const ParticleTrainingOptions& options);
-
-  int num_windows() const { return static_cast<int>(all_.size()); }
-  // Drawn by group, window and side.
-  torch::Tensor Draw() const;
-  // At most `most` of all windows, evenly taken, none in the mirror.
-  torch::Tensor Some(int most) const;
-
- private:
-  torch::Tensor Gather(const std::vector<int64_t>& places) const;
-
-  const ParticleTrainingOptions& options_;
-  torch::Tensor frames_;       // of all motions below one another, then of all mirrored
-  int64_t mirrored_rows_ = 0;  // where the mirrored begin
-  std::vector<int64_t> all_;   // the rows where windows begin
-  std::vector<std::vector<int64_t>> by_group_;
-  std::vector<double> group_share_;  // summed up
-};
-
-// How particles and siMLPe are trained.
-inline constexpr double kLossUnits = 1e3;  // the gradient is clipped with the loss in mm
-// Share of the largest rate: up in a straight line, then down to nothing by a cosine.
-inline double RateShareToZero(int step, int steps, int warm_up) {
-  const int up = std::min(warm_up, std::max(1, steps / 2));
-  if (step < up) return (step + 1.0) / up;
-  return 0.5 * (1.0 + std::cos(M_PI * (step - up) / std::max(1, steps - up)));
-}
-
-// Means and spreads of poses and displacements, over the motions and their mirror images.
-ParticleNetwork ParticleStatistics(const ParticleLayout& layout,
-                                   const std::vector<LearntParticles>& motions,
-                                   const ParticleTrainingOptions& options);
-
-// What a forecast of particles is charged.
+// The losses of forecasts of particles.
 class ParticleLosses {
  public:
   ParticleLosses(const ParticleLayout& layout, const ParticleTrainingOptions& options)
@@ -330,29 +288,28 @@ class ParticleLosses {
   }
 
   // The loss of forecasts, [batch, frame, coordinate], against the windows they belong to; m.
-  torch::Tensor operator()(const torch::Tensor& forecast, const torch::Tensor& batch) const {
-    const torch::Tensor truth = batch.narrow(1, options_.observed, options_.predicted);
-    const torch::Tensor share = frames_ * torch::ones({batch.size(0), options_.predicted});
-    const auto mean = [&](const torch::Tensor& by_frame) {
+  Tensor operator()(const Tensor& forecast, const Tensor& batch) const {
+    const Tensor truth = batch.narrow(1, options_.observed, options_.predicted);
+    const Tensor share = frames_ * torch::ones({batch.size(0), options_.predicted});
+    const auto mean = [&](const Tensor& by_frame) {
       return (by_frame * share).sum() / share.sum();
     };
-    const torch::Tensor squares = (Points(forecast) - Points(truth)).square().sum(3);
-    const torch::Tensor weights = weights_.to(squares.scalar_type());
-    torch::Tensor loss =
-        options_.distance * mean(torch::matmul((squares + kSmooth).sqrt(), weights));
+    const Tensor squares = (Points(forecast) - Points(truth)).square().sum(3);
+    const Tensor weights = weights_.to(squares.scalar_type());
+    Tensor loss = options_.distance * mean(torch::matmul((squares + kSmooth).sqrt(), weights));
     if (options_.squared > 0.0) {
       loss = loss + options_.squared * mean(torch::matmul(squares, weights));
     }
     if (options_.changes > 0.0) {
-      const auto changes = [](const torch::Tensor& of) { return Points(of).diff(1, 1); };
-      const torch::Tensor misfit = changes(forecast) - changes(truth);
-      const torch::Tensor distances = (misfit.square().sum(3) + kSmooth).sqrt();
-      const torch::Tensor share_of = share.narrow(1, 1, options_.predicted - 1);
+      const auto changes = [](const Tensor& of) { return Points(of).diff(1, 1); };
+      const Tensor misfit = changes(forecast) - changes(truth);
+      const Tensor distances = (misfit.square().sum(3) + kSmooth).sqrt();
+      const Tensor share_of = share.narrow(1, 1, options_.predicted - 1);
       loss = loss + options_.changes * (torch::matmul(distances, weights) * share_of).sum() /
                         share_of.sum();
     }
     if (options_.bones > 0.0) {
-      const torch::Tensor misfit = (Bones(forecast) - Bones(truth)).abs() * has_bone_;
+      const Tensor misfit = (Bones(forecast) - Bones(truth)).abs() * has_bone_;
       loss = loss + options_.bones * mean(misfit.sum(2) / has_bone_.sum());
     }
     return loss;
@@ -361,65 +318,39 @@ class ParticleLosses {
  private:
   static constexpr double kSmooth = 1e-12;  // m^2; a root has no derivative at 0
 
-  static torch::Tensor Points(const torch::Tensor& motion) {
+  static Tensor Points(const Tensor& motion) {
     return motion.reshape({motion.size(0), motion.size(1), motion.size(2) / 3, 3});
   }
-  torch::Tensor Bones(const torch::Tensor& motion) const {
-    const torch::Tensor points = Points(motion);
-    const torch::Tensor starts =
-        points.index_select(2, parents_) * (1.0 - is_fixed_) + fixed_ * is_fixed_;
+  Tensor Bones(const Tensor& motion) const {
+    const Tensor points = Points(motion);
+    const Tensor starts = points.index_select(2, parents_) * (1.0 - is_fixed_) + fixed_ * is_fixed_;
     return ((points - starts).square().sum(3) + kSmooth).sqrt();
   }
 
   const ParticleTrainingOptions& options_;
-  torch::Tensor weights_, frames_, parents_, has_bone_, fixed_, is_fixed_;
-};
-
-// A training on windows: of particles, and of siMLPe.
-template <typename Run, typename Self, typename Options>
-struct WindowsRun : StepsRun<Run, Self> {
-  WindowsRun(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
-             const std::vector<LearntParticles>& held, const Options& given)
-      : options(given),
-        windows(layout, learnt, options),
-        held_windows(layout, held, options),
-        losses(layout, options) {}
-
-  Options options;
-  ParticleWindows windows, held_windows;
-  ParticleLosses losses;
-
-  virtual double LossOfHeld(const torch::Tensor& batch, int of_step) = 0;
-  double HeldLoss(int of_step) override {
-    constexpr int kHeldWindows = 256;
-    if (held_windows.num_windows() == 0) return std::nan("");
-    torch::NoGradGuard no_grad;
-    return LossOfHeld(held_windows.Some(kHeldWindows), of_step);
-  }
+  Tensor weights_, frames_, parents_, has_bone_, fixed_, is_fixed_;
 };
 
 // A Wasserstein critic of whole forecasts (SDE's Eq. 12) on what moves from the last observed frame
 // on, in the pose's spreads: three fully connected layers, two of 256 and the third to the score.
 class ParticleCritic : public torch::nn::Module {
  public:
-  ParticleCritic(int64_t inputs, torch::Tensor spread) : spread_(std::move(spread)) {
+  ParticleCritic(int64_t inputs, Tensor spread) : spread_(std::move(spread)) {
     layers_ = register_module(
         "layers", torch::nn::Sequential(torch::nn::Linear(inputs, kWidth), torch::nn::ELU(),
                                         torch::nn::Linear(kWidth, kWidth), torch::nn::ELU(),
                                         torch::nn::Linear(kWidth, 1)));
   }
-  torch::Tensor Features(const torch::Tensor& forecast, const torch::Tensor& last) const {
+  Tensor Features(const Tensor& forecast, const Tensor& last) const {
     return ((forecast - last) / spread_).flatten(1);
   }
-  torch::Tensor Score(const torch::Tensor& features) { return layers_->forward(features).mean(); }
+  Tensor Score(const Tensor& features) { return layers_->forward(features).mean(); }
 
   // The critic's own loss: forecasts below truths, with a slope of 1 in between, where `share` of
   // the way from forecast to truth is gone, [batch, 1].
-  torch::Tensor Loss(const torch::Tensor& forecast, const torch::Tensor& truth,
-                     const torch::Tensor& share) {
-    const torch::Tensor between =
-        (share * truth + (1.0 - share) * forecast).detach().requires_grad_(true);
-    const torch::Tensor slope =
+  Tensor Loss(const Tensor& forecast, const Tensor& truth, const Tensor& share) {
+    const Tensor between = (share * truth + (1.0 - share) * forecast).detach().requires_grad_(true);
+    const Tensor slope =
         torch::autograd::grad({layers_->forward(between).sum()}, {between}, {}, true, true)[0];
     return Score(forecast) - Score(truth) + kPenalty * (slope.norm(2, 1) - 1.0).square().mean();
   }
@@ -427,7 +358,7 @@ class ParticleCritic : public torch::nn::Module {
  private:
   static constexpr int64_t kWidth = 256;
   static constexpr double kPenalty = 10.0;
-  torch::Tensor spread_;
+  Tensor spread_;
   torch::nn::Sequential layers_{nullptr};
 };
 

@@ -1,4 +1,4 @@
-// models: windows, what is known of all of them, and the trainers of particles and of siMLPe.
+// models: training of particles and of siMLPe: windows of motion, and the trainers.
 #include <algorithm>
 
 #include "models/generators/particle_module_torch.h"
@@ -6,70 +6,115 @@
 namespace pushid {
 namespace {
 
-constexpr float kLeastSpread = 1e-4f;  // m; of a coordinate that hardly moves
-
-}  // namespace
-
-ParticleWindows::ParticleWindows(const ParticleLayout& layout,
-                                 const std::vector<LearntParticles>& motions,
-                                 const ParticleTrainingOptions& options)
-    : options_(options) {
-  const int window = options.observed + options.predicted;
-  std::vector<torch::Tensor> frames;
-  int64_t row = 0;
-  for (const bool mirror : {false, true}) {
-    for (const LearntParticles& motion : motions) {
-      const int64_t count = motion.motion.cols();
-      frames.push_back(ToTensor(mirror ? Mirrored(motion.motion, layout) : motion.motion));
-      for (int64_t start = 0; !mirror && start + window <= count; ++start) {
-        const size_t group = static_cast<size_t>(motion.group);
-        if (by_group_.size() <= group) by_group_.resize(group + 1);
-        all_.push_back(row + start);
-        by_group_[group].push_back(row + start);
+// Windows to learn from, drawn by group, window and side.
+class ParticleWindows {
+ public:
+  ParticleWindows(const ParticleLayout& layout, const std::vector<LearntParticles>& motions,
+                  const ParticleTrainingOptions& options)
+      : options_(options) {
+    const int window = options.observed + options.predicted;
+    std::vector<Tensor> frames;
+    int64_t row = 0;
+    for (const bool mirror : {false, true}) {
+      for (const LearntParticles& motion : motions) {
+        const int64_t count = motion.motion.cols();
+        frames.push_back(ToTensor(mirror ? Mirrored(motion.motion, layout) : motion.motion));
+        for (int64_t start = 0; !mirror && start + window <= count; ++start) {
+          const size_t group = static_cast<size_t>(motion.group);
+          if (by_group_.size() <= group) by_group_.resize(group + 1);
+          all_.push_back(row + start);
+          by_group_[group].push_back(row + start);
+        }
+        row += count;
       }
-      row += count;
+      if (!mirror) mirrored_rows_ = row;
     }
-    if (!mirror) mirrored_rows_ = row;
+    if (motions.empty()) return;
+    frames_ = torch::cat(frames);
+    double sum = 0.0;
+    for (const auto& places : by_group_) {
+      sum += std::sqrt(static_cast<double>(places.size()));
+      group_share_.push_back(sum);
+    }
+    for (double& share : group_share_) share /= sum;
   }
-  if (motions.empty()) return;
-  frames_ = torch::cat(frames);
-  double sum = 0.0;
-  for (const auto& places : by_group_) {
-    sum += std::sqrt(static_cast<double>(places.size()));
-    group_share_.push_back(sum);
+
+  bool empty() const { return all_.empty(); }
+
+  Tensor Draw() const {
+    const Tensor random = torch::rand({options_.batch, 3}, torch::kFloat64);
+    const auto drawn = random.accessor<double, 2>();
+    std::vector<int64_t> places;
+    for (int i = 0; i < options_.batch; ++i) {
+      const size_t group =
+          std::upper_bound(group_share_.begin(), group_share_.end() - 1, drawn[i][0]) -
+          group_share_.begin();
+      const auto& among = by_group_[group];
+      const size_t place = static_cast<size_t>(drawn[i][1] * static_cast<double>(among.size()));
+      places.push_back(among[place] + (drawn[i][2] < options_.mirrored ? mirrored_rows_ : 0));
+    }
+    return Gather(places);
   }
-  for (double& share : group_share_) share /= sum;
-}
 
-torch::Tensor ParticleWindows::Draw() const {
-  const torch::Tensor random = torch::rand({options_.batch, 3}, torch::kFloat64);
-  const auto drawn = random.accessor<double, 2>();
-  std::vector<int64_t> places;
-  for (int i = 0; i < options_.batch; ++i) {
-    const size_t group =
-        std::upper_bound(group_share_.begin(), group_share_.end() - 1, drawn[i][0]) -
-        group_share_.begin();
-    const auto& among = by_group_[group];
-    const size_t place = static_cast<size_t>(drawn[i][1] * static_cast<double>(among.size()));
-    places.push_back(among[place] + (drawn[i][2] < options_.mirrored ? mirrored_rows_ : 0));
+  // At most `most` of all windows, evenly taken, none in the mirror.
+  Tensor Some(int most) const {
+    const size_t step = std::max<size_t>(1, all_.size() / static_cast<size_t>(most));
+    std::vector<int64_t> places;
+    for (size_t i = 0; i < all_.size(); i += step) places.push_back(all_[i]);
+    return Gather(places);
   }
-  return Gather(places);
+
+ private:
+  Tensor Gather(const std::vector<int64_t>& places) const {
+    const int64_t count = static_cast<int64_t>(places.size());
+    const int64_t window = options_.observed + options_.predicted;
+    const Tensor rows = torch::tensor(places).unsqueeze(1) + torch::arange(window);
+    return frames_.index_select(0, rows.flatten()).reshape({count, window, frames_.size(1)});
+  }
+
+  const ParticleTrainingOptions& options_;
+  Tensor frames_;              // of all motions below one another, then of all mirrored
+  int64_t mirrored_rows_ = 0;  // where the mirrored begin
+  std::vector<int64_t> all_;   // the rows where windows begin
+  std::vector<std::vector<int64_t>> by_group_;
+  std::vector<double> group_share_;  // summed up
+};
+
+constexpr double kLossUnits = 1e3;  // the gradient is clipped with the loss in mm
+
+// Share of the largest rate: up in a straight line, then down to nothing by a cosine.
+double RateShareToZero(int step, int steps, int warm_up) {
+  const int up = std::min(warm_up, std::max(1, steps / 2));
+  if (step < up) return (step + 1.0) / up;
+  return 0.5 * (1.0 + std::cos(M_PI * (step - up) / std::max(1, steps - up)));
 }
 
-torch::Tensor ParticleWindows::Some(int most) const {
-  const size_t step = std::max<size_t>(1, all_.size() / static_cast<size_t>(most));
-  std::vector<int64_t> places;
-  for (size_t i = 0; i < all_.size(); i += step) places.push_back(all_[i]);
-  return Gather(places);
-}
+// A training on windows: of particles, and of siMLPe.
+template <typename Interface, typename Options>
+struct WindowsTraining : StepsTraining<Interface> {
+  WindowsTraining(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
+                  const std::vector<LearntParticles>& held, const Options& given)
+      : options(given),
+        windows(layout, learnt, options),
+        held_windows(layout, held, options),
+        losses(layout, options) {
+    StartTraining(options);
+  }
 
-torch::Tensor ParticleWindows::Gather(const std::vector<int64_t>& places) const {
-  const int64_t count = static_cast<int64_t>(places.size());
-  const int64_t window = options_.observed + options_.predicted;
-  const torch::Tensor rows = torch::tensor(places).unsqueeze(1) + torch::arange(window);
-  return frames_.index_select(0, rows.flatten()).reshape({count, window, frames_.size(1)});
-}
+  Options options;
+  ParticleWindows windows, held_windows;
+  ParticleLosses losses;
 
+  virtual double LossOfHeld(const Tensor& batch, int of_step) = 0;
+  double HeldLoss(int of_step) override {
+    constexpr int kHeldWindows = 256;
+    if (held_windows.empty()) return std::nan("");
+    torch::NoGradGuard no_grad;
+    return LossOfHeld(held_windows.Some(kHeldWindows), of_step);
+  }
+};
+
+// Means and spreads of poses and displacements, over the motions and their mirror images.
 ParticleNetwork ParticleStatistics(const ParticleLayout& layout,
                                    const std::vector<LearntParticles>& motions,
                                    const ParticleTrainingOptions& options) {
@@ -89,6 +134,7 @@ ParticleNetwork ParticleStatistics(const ParticleLayout& layout,
   }
   frames = std::max(frames, 1.0);
   const Eigen::VectorXd mean = sum / frames;
+  static constexpr float kLeastSpread = 1e-4f;  // m; of a coordinate that hardly moves
   const auto spread = [](const Eigen::VectorXd& square) -> Eigen::VectorXf {
     return square.cwiseMax(0.0).cwiseSqrt().cast<float>().cwiseMax(kLeastSpread);
   };
@@ -100,37 +146,38 @@ ParticleNetwork ParticleStatistics(const ParticleLayout& layout,
   return network;
 }
 
-namespace {
-
 constexpr int kScatterBatches = 32;  // thousands of windows for the correlations of the noise
 
-torch::Tensor NoJitter(const torch::Tensor& batch) {
-  return torch::zeros({batch.size(0), 1, batch.size(2)});
-}
+Tensor NoJitter(const Tensor& batch) { return torch::zeros({batch.size(0), 1, batch.size(2)}); }
 
-}  // namespace
-
-struct ParticleTrainer::Torch : WindowsRun<Run, Torch, ParticleTrainingOptions> {
-  Torch(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
-        const std::vector<LearntParticles>& held, const ParticleTrainingOptions& given)
-      : WindowsRun(layout, learnt, held, given),
-        statistics(ParticleStatistics(layout, learnt, options)) {}
-
+struct ParticleTraining : WindowsTraining<ParticleTrainer, ParticleTrainingOptions> {
   ParticleNetwork statistics;
   std::shared_ptr<ParticleModule> module;
   std::shared_ptr<ParticleCritic> critic;
-  std::unique_ptr<torch::optim::AdamW> drift, noise, critics;
+  std::unique_ptr<AdamW> drift, noise, critics;
 
-  template <typename Fields>
-  void Keep(Fields* fields) {
-    fields->Part("module", module.get());
-    fields->Part("drift", drift.get());
-    fields->Part("noise", noise.get());
+  ParticleTraining(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
+                   const std::vector<LearntParticles>& held, const ParticleTrainingOptions& given)
+      : WindowsTraining(layout, learnt, held, given),
+        statistics(ParticleStatistics(layout, learnt, options)) {
+    module = std::make_shared<ParticleModule>(statistics);
+    drift = Adam(Trained());
+    noise = Adam(module->NoiseParameters());
+    if (options.critic <= 0.0) return;
+    critic = std::make_shared<ParticleCritic>(layout.num_coordinates() * options.predicted,
+                                              ToTensor(statistics.pose_spread));
+    critics = Adam(critic->parameters());
+  }
+
+  void Keep(StateArchive* state) override {
+    state->Part("module", module.get());
+    state->Part("drift", drift.get());
+    state->Part("noise", noise.get());
     if (critic) {
-      fields->Part("critic", critic.get());
-      fields->Part("critics", critics.get());
+      state->Part("critic", critic.get());
+      state->Part("critics", critics.get());
     }
-    fields->Numbers("step", &step);
+    state->Numbers("step", &step);
   }
 
   int AllSteps() const override {
@@ -142,61 +189,60 @@ struct ParticleTrainer::Torch : WindowsRun<Run, Torch, ParticleTrainingOptions> 
     return options.together ? "drift and noise" : InDrift(of_step) ? "drift" : "noise";
   }
 
-  std::unique_ptr<torch::optim::AdamW> Adam(const std::vector<torch::Tensor>& parameters) const {
+  std::unique_ptr<AdamW> Adam(const std::vector<Tensor>& parameters) const {
     return MakeOptimizer(parameters, options.learning_rate, 0.0);
   }
 
-  torch::Tensor Jitter(const torch::Tensor& batch) const {
+  Tensor Jitter(const Tensor& batch) const {
     return options.jitter * torch::randn({batch.size(0), 1, batch.size(2)});
   }
 
   // drawn: w_1:K of Eq. 6 as printed.
-  torch::Tensor NoiseLossOf(const torch::Tensor& batch, const torch::Tensor& jitter,
-                            const torch::Tensor& drawn = {}) const {
+  Tensor NoiseLossOf(const Tensor& batch, const Tensor& jitter, const Tensor& drawn = {}) const {
     const int first =
         std::min(options.together ? kFirstTransition : kFirstNoiseStep, options.observed);
     const auto [misses, hidden] = module->Misses(batch, jitter, first, options.together);
-    const torch::Tensor w = drawn.defined() ? drawn.narrow(1, first, misses.size(1)) : drawn;
-    const torch::Tensor charge = TransitionLoss(
-        options.noise_loss, misses, module->LogNoise(hidden), module->NoiseBelow(hidden), w);
+    const Tensor w = drawn.defined() ? drawn.narrow(1, first, misses.size(1)) : drawn;
+    const Tensor charge = TransitionLoss(options.noise_loss, misses, module->LogNoise(hidden),
+                                         module->NoiseBelow(hidden), w);
     return charge.sum() / static_cast<double>(charge.numel());
   }
 
-  std::vector<torch::Tensor> Trained() const {
-    std::vector<torch::Tensor> parameters = module->DriftParameters();
+  std::vector<Tensor> Trained() const {
+    std::vector<Tensor> parameters = module->DriftParameters();
     if (!options.together) return parameters;
-    for (const torch::Tensor& of_noise : module->NoiseParameters()) parameters.push_back(of_noise);
+    for (const Tensor& of_noise : module->NoiseParameters()) parameters.push_back(of_noise);
     return parameters;
   }
 
-  void ImproveAt(double rate, torch::optim::AdamW* optimizer,
-                 const std::vector<torch::Tensor>& parameters, const torch::Tensor& loss) {
+  void ImproveAt(double rate, AdamW* optimizer, const std::vector<Tensor>& parameters,
+                 const Tensor& loss) {
     SetLearningRate(optimizer, rate);
     Improve(optimizer, loss, parameters, options.clip);
   }
 
   double DriftStep() {
-    const torch::Tensor batch = windows.Draw();
-    const torch::Tensor jitter = Jitter(batch);
+    const Tensor batch = windows.Draw();
+    const Tensor jitter = Jitter(batch);
     const double share =
         options.constant_rate ? 1.0 : RateShareToZero(step, options.steps, options.warm_up);
     const double rate = options.learning_rate * share;
-    torch::Tensor drawn;
+    Tensor drawn;
     if (options.together) {
       drawn = torch::randn({batch.size(0), options.observed, batch.size(2)});
     }
-    const torch::Tensor forecast =
+    const Tensor forecast =
         module->Forecast(batch, jitter, options.observed, options.predicted, drawn);
-    torch::Tensor loss = losses(forecast, batch);
+    Tensor loss = losses(forecast, batch);
     if (options.together) {
-      const torch::Tensor seen = batch.narrow(1, 0, options.observed);
+      const Tensor seen = batch.narrow(1, 0, options.observed);
       loss = loss + options.transitions * NoiseLossOf(seen, jitter, drawn);
     }
     const double shown = loss.item<double>();
     if (critic) {
-      const torch::Tensor last = batch.narrow(1, options.observed - 1, 1);
-      const torch::Tensor made = critic->Features(forecast, last);
-      const torch::Tensor real =
+      const Tensor last = batch.narrow(1, options.observed - 1, 1);
+      const Tensor made = critic->Features(forecast, last);
+      const Tensor real =
           critic->Features(batch.narrow(1, options.observed, options.predicted), last);
       ImproveAt(rate, critics.get(), critic->parameters(),
                 critic->Loss(made.detach(), real, torch::rand({real.size(0), 1})));
@@ -207,8 +253,8 @@ struct ParticleTrainer::Torch : WindowsRun<Run, Torch, ParticleTrainingOptions> 
   }
 
   double NoiseStep() {
-    const torch::Tensor batch = windows.Draw();
-    const torch::Tensor loss = NoiseLossOf(batch, Jitter(batch));
+    const Tensor batch = windows.Draw();
+    const Tensor loss = NoiseLossOf(batch, Jitter(batch));
     const double share =
         RateShareToZero(step - options.steps, options.noise_steps, options.warm_up);
     ImproveAt(options.learning_rate * share, noise.get(), module->NoiseParameters(), loss);
@@ -225,52 +271,31 @@ struct ParticleTrainer::Torch : WindowsRun<Run, Torch, ParticleTrainingOptions> 
     Eigen::MatrixXd scatter =
         Eigen::MatrixXd::Zero(statistics.num_coordinates(), statistics.num_coordinates());
     for (int i = 0; i < kScatterBatches; ++i) {
-      const torch::Tensor batch = windows.Draw();
+      const Tensor batch = windows.Draw();
       const auto [misses, hidden] = module->Misses(batch, Jitter(batch), first);
-      const torch::Tensor scaled = (misses * (-module->LogNoise(hidden)).exp()).flatten(0, 1);
+      const Tensor scaled = (misses * (-module->LogNoise(hidden)).exp()).flatten(0, 1);
       scatter += ToMatrix(torch::matmul(scaled.t(), scaled)).cast<double>();
     }
     module->SetScatter(scatter);
   }
 
-  double LossOfHeld(const torch::Tensor& batch, int of_step) override {
-    const torch::Tensor none = NoJitter(batch);
+  double LossOfHeld(const Tensor& batch, int of_step) override {
+    const Tensor none = NoJitter(batch);
     if (!InDrift(of_step)) return NoiseLossOf(batch, none).item<double>();
     return losses(module->Forecast(batch, none, options.observed, options.predicted), batch)
         .item<double>();
   }
+
+  ParticleNetwork Network() const override { return module->Network(statistics); }
+
+  Trajectories Forecast(const ObservedMotion& person, int frames) const override {
+    torch::NoGradGuard no_grad;
+    const Tensor batch = ToTensor(person.frames).unsqueeze(0);
+    const Tensor forecast =
+        module->Forecast(batch, NoJitter(batch), static_cast<int>(person.frames.cols()), frames);
+    return ToMatrix(forecast.squeeze(0)).transpose();
+  }
 };
-
-ParticleTrainer::ParticleTrainer(const ParticleLayout& layout,
-                                 const std::vector<LearntParticles>& learnt,
-                                 const std::vector<LearntParticles>& held,
-                                 const ParticleTrainingOptions& options)
-    : Trainer(std::make_unique<Torch>(layout, learnt, held, options)) {
-  StartTraining(options);
-  Torch& t = As<Torch>();
-  t.module = std::make_shared<ParticleModule>(t.statistics);
-  t.drift = t.Adam(t.Trained());
-  t.noise = t.Adam(t.module->NoiseParameters());
-  if (options.critic <= 0.0) return;
-  t.critic = std::make_shared<ParticleCritic>(layout.num_coordinates() * options.predicted,
-                                              ToTensor(t.statistics.pose_spread));
-  t.critics = t.Adam(t.critic->parameters());
-}
-
-ParticleNetwork ParticleTrainer::Network() const {
-  const Torch& t = As<Torch>();
-  return t.module->Network(t.statistics);
-}
-
-Trajectories ParticleTrainer::Forecast(const ObservedMotion& person, int frames) const {
-  torch::NoGradGuard no_grad;
-  const torch::Tensor batch = ToTensor(person.frames).unsqueeze(0);
-  const torch::Tensor forecast = As<Torch>().module->Forecast(
-      batch, NoJitter(batch), static_cast<int>(person.frames.cols()), frames);
-  return ToMatrix(forecast.squeeze(0)).transpose();
-}
-
-namespace {
 
 // Coefficients stand first, [coefficient, batch, coordinate]: a block is then one product.
 class SimlpeModule : public torch::nn::Module {
@@ -296,17 +321,16 @@ class SimlpeModule : public torch::nn::Module {
   }
 
   // past: [batch, frame, coordinate], and so is the forecast. jitter: [batch, 1, coordinate].
-  torch::Tensor Forecast(const torch::Tensor& past, const torch::Tensor& jitter) {
+  Tensor Forecast(const Tensor& past, const Tensor& jitter) {
     const int64_t batch = past.size(0);
-    const torch::Tensor poses = (past - pose_mean_) / pose_spread_ + jitter;
-    torch::Tensor state = input_->forward(torch::matmul(transform_, poses)).transpose(0, 1);
+    const Tensor poses = (past - pose_mean_) / pose_spread_ + jitter;
+    Tensor state = input_->forward(torch::matmul(transform_, poses)).transpose(0, 1);
     for (size_t i = 0; i < mixes_.size(); ++i) {
-      const torch::Tensor mixed = torch::addmm(mixes_[i]->bias.unsqueeze(1), mixes_[i]->weight,
-                                               state.reshape({observed_, batch * size_}));
+      const Tensor mixed = torch::addmm(mixes_[i]->bias.unsqueeze(1), mixes_[i]->weight,
+                                        state.reshape({observed_, batch * size_}));
       state = state + norms_[i]->forward(mixed.reshape({observed_, batch, size_}));
     }
-    const torch::Tensor moved =
-        torch::matmul(transform_.t(), output_->forward(state).transpose(0, 1));
+    const Tensor moved = torch::matmul(transform_.t(), output_->forward(state).transpose(0, 1));
     return past.narrow(1, observed_ - 1, 1) + pose_spread_ * moved;
   }
 
@@ -324,67 +348,72 @@ class SimlpeModule : public torch::nn::Module {
   static constexpr double kSmallGain = 1e-2;  // the first forecast stands nearly still
 
   int64_t size_, observed_;
-  torch::Tensor pose_mean_, pose_spread_, transform_;
+  Tensor pose_mean_, pose_spread_, transform_;
   torch::nn::Linear input_{nullptr}, output_{nullptr};
   std::vector<torch::nn::Linear> mixes_;
   std::vector<torch::nn::LayerNorm> norms_;
 };
 
-}  // namespace
-
-struct SimlpeTrainer::Torch : WindowsRun<Run, Torch, SimlpeTrainingOptions> {
-  using WindowsRun::WindowsRun;
-
+struct SimlpeTraining : WindowsTraining<SimlpeTrainer, SimlpeTrainingOptions> {
   std::shared_ptr<SimlpeModule> module;
-  std::unique_ptr<torch::optim::AdamW> optimizer;
+  std::unique_ptr<AdamW> optimizer;
 
-  template <typename Fields>
-  void Keep(Fields* fields) {
-    fields->Part("module", module.get());
-    fields->Part("optimizer", optimizer.get());
-    fields->Numbers("step", &step);
+  SimlpeTraining(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
+                 const std::vector<LearntParticles>& held, const SimlpeTrainingOptions& given)
+      : WindowsTraining(layout, learnt, held, given),
+        module(std::make_shared<SimlpeModule>(ParticleStatistics(layout, learnt, options),
+                                              options.observed, options.blocks)),
+        optimizer(
+            MakeOptimizer(module->parameters(), options.learning_rate, options.weight_decay)) {}
+
+  void Keep(StateArchive* state) override {
+    state->Part("module", module.get());
+    state->Part("optimizer", optimizer.get());
+    state->Numbers("step", &step);
   }
 
   int AllSteps() const override { return options.steps; }
   const char* Stage(int) const override { return "perceptron"; }
 
-  torch::Tensor Loss(const torch::Tensor& batch, double jitter) {
-    const torch::Tensor past = batch.narrow(1, 0, options.observed);
-    const torch::Tensor moved = jitter * torch::randn({past.size(0), 1, past.size(2)});
+  Tensor Loss(const Tensor& batch, double jitter) {
+    const Tensor past = batch.narrow(1, 0, options.observed);
+    const Tensor moved = jitter * torch::randn({past.size(0), 1, past.size(2)});
     return losses(module->Forecast(past, moved), batch);
   }
 
   double Step() override {
     SetLearningRate(optimizer.get(),
                     options.learning_rate * RateShareToZero(step, options.steps, options.warm_up));
-    const torch::Tensor loss = Loss(windows.Draw(), options.jitter);
+    const Tensor loss = Loss(windows.Draw(), options.jitter);
     Improve(optimizer.get(), kLossUnits * loss, module->parameters(), options.clip);
     return loss.item<double>();
   }
 
-  double LossOfHeld(const torch::Tensor& batch, int) override {
-    return Loss(batch, 0.0).item<double>();
+  double LossOfHeld(const Tensor& batch, int) override { return Loss(batch, 0.0).item<double>(); }
+
+  SimlpeNetwork Network() const override { return module->Network(); }
+
+  Trajectories Forecast(const Trajectories& seen) const override {
+    torch::NoGradGuard no_grad;
+    const Tensor past = ToTensor(seen).unsqueeze(0);
+    return ToMatrix(module->Forecast(past, torch::zeros({1})).squeeze(0)).transpose();
   }
 };
 
-SimlpeTrainer::SimlpeTrainer(const ParticleLayout& layout,
-                             const std::vector<LearntParticles>& learnt,
-                             const std::vector<LearntParticles>& held,
-                             const SimlpeTrainingOptions& options)
-    : Trainer(std::make_unique<Torch>(layout, learnt, held, options)) {
-  StartTraining(options);
-  Torch& t = As<Torch>();
-  t.module = std::make_shared<SimlpeModule>(ParticleStatistics(layout, learnt, options),
-                                            options.observed, options.blocks);
-  t.optimizer = MakeOptimizer(t.module->parameters(), options.learning_rate, options.weight_decay);
+}  // namespace
+
+std::unique_ptr<ParticleTrainer> ParticleTrainer::Make(const ParticleLayout& layout,
+                                                       const std::vector<LearntParticles>& learnt,
+                                                       const std::vector<LearntParticles>& held,
+                                                       const ParticleTrainingOptions& options) {
+  return std::make_unique<ParticleTraining>(layout, learnt, held, options);
 }
 
-SimlpeNetwork SimlpeTrainer::Network() const { return As<Torch>().module->Network(); }
-
-Trajectories SimlpeTrainer::Forecast(const Trajectories& seen) const {
-  torch::NoGradGuard no_grad;
-  const torch::Tensor past = ToTensor(seen).unsqueeze(0);
-  return ToMatrix(As<Torch>().module->Forecast(past, torch::zeros({1})).squeeze(0)).transpose();
+std::unique_ptr<SimlpeTrainer> SimlpeTrainer::Make(const ParticleLayout& layout,
+                                                   const std::vector<LearntParticles>& learnt,
+                                                   const std::vector<LearntParticles>& held,
+                                                   const SimlpeTrainingOptions& options) {
+  return std::make_unique<SimlpeTraining>(layout, learnt, held, options);
 }
 
 }  // namespace pushid

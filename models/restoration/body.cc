@@ -10,18 +10,6 @@
 namespace pushid {
 namespace {
 
-// Every joint of the body turns towards its children.
-const JointAims& BodyTree() {
-  static const JointAims body = [] {
-    JointAims tree;
-    tree.parents.assign(kBodyParents.begin(), kBodyParents.end());
-    tree.aims.resize(kBodyJoints);
-    for (int j = 1; j < kBodyJoints; ++j) tree.aims[kBodyParents[j]].push_back(j);
-    return tree;
-  }();
-  return body;
-}
-
 // A stretched knee has no direction to bend in, hence never quite stretched.
 constexpr double kMostStretched = 0.9995;
 constexpr double kStraight = 1e-4;  // m
@@ -72,9 +60,8 @@ FittedTree FitTree(const JointAims& tree, const Eigen::Matrix3Xd& rest,
   for (int j = 0; j < joints; ++j) {
     const int above = tree.parents[j];
     const Eigen::Matrix3d parent = above < 0 ? Eigen::Matrix3d::Identity() : posed.rotations[above];
-    if (above < 0) {
-      posed.positions.col(j) = wanted.col(j);
-    } else {
+    posed.positions.col(j) = wanted.col(j);
+    if (above >= 0) {
       posed.positions.col(j) =
           posed.positions.col(above) + parent * (rest.col(j) - rest.col(above));
     }
@@ -97,12 +84,15 @@ FittedTree FitTree(const JointAims& tree, const Eigen::Matrix3Xd& rest,
   return posed;
 }
 
-PosedSkeleton FitSkeleton(const Pose& rest, const Pose& wanted) {
-  const FittedTree fitted = FitTree(BodyTree(), rest, wanted);
-  PosedSkeleton posed;
-  posed.positions = fitted.positions;
-  std::copy(fitted.rotations.begin(), fitted.rotations.end(), posed.rotations.begin());
-  return posed;
+FittedTree FitSkeleton(const Pose& rest, const Pose& wanted) {
+  static const JointAims body = [] {
+    JointAims tree;
+    tree.parents.assign(kBodyParents.begin(), kBodyParents.end());
+    tree.aims.resize(kBodyJoints);
+    for (int j = 1; j < kBodyJoints; ++j) tree.aims[kBodyParents[j]].push_back(j);
+    return tree;
+  }();
+  return FitTree(body, rest, wanted);
 }
 
 double ReachWithLeg(bool left, const Eigen::Vector3d& target, Pose* pose) {

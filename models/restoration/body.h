@@ -40,10 +40,6 @@ enum BodyJoint {
   kLeftToe = 21
 };
 
-// LDP's halves: what its lower and its upper network pose.
-inline constexpr std::array<int, 9> kLowerJoints = {0, 14, 15, 16, 17, 18, 19, 20, 21};
-inline constexpr std::array<int, 14> kUpperJoints = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13};
-
 // A column per joint, m, world.
 using Pose = Eigen::Matrix<double, 3, kBodyJoints>;
 using BodyMotion = std::vector<Pose>;  // frame by frame
@@ -96,12 +92,11 @@ Eigen::Matrix3d FitRotation(const std::vector<Eigen::Vector3d>& from,
 // kinematics, and a BVH file holds them exactly. Rejected: scaling each bone along its wanted
 // direction. It keeps lengths too, but tears pelvis and shoulders out of shape, and no hierarchy of
 // rotations can hold the result.
-struct PosedSkeleton {
-  Pose positions;
-  std::array<Eigen::Matrix3d, kBodyJoints> rotations;  // world, against the rest pose
+struct FittedTree {
+  Eigen::Matrix3Xd positions;
+  std::vector<Eigen::Matrix3d> rotations;  // world, against the rest pose
 };
-
-PosedSkeleton FitSkeleton(const Pose& rest, const Pose& wanted);
+FittedTree FitSkeleton(const Pose& rest, const Pose& wanted);
 
 // Aims of any tree of joints, a column each. Every parent precedes its children, -1 is a
 // root, which goes where it is wanted; a joint turns towards its `aims`, joints further out, and
@@ -109,10 +104,6 @@ PosedSkeleton FitSkeleton(const Pose& rest, const Pose& wanted);
 struct JointAims {
   std::vector<int> parents;
   std::vector<std::vector<int>> aims;
-};
-struct FittedTree {
-  Eigen::Matrix3Xd positions;
-  std::vector<Eigen::Matrix3d> rotations;  // world, against the rest
 };
 FittedTree FitTree(const JointAims& tree, const Eigen::Matrix3Xd& rest,
                    const Eigen::Matrix3Xd& wanted);

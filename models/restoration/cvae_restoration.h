@@ -1,4 +1,5 @@
-// models: what LDP's chain of conditional variational autoencoders sees and says, frame by frame.
+// models: bodies by LDP's chain of conditional variational autoencoders, frame after frame,
+// everybody together.
 //
 // A frame of the lower body has 111 numbers, of the upper body 171, of both in one network 267, all
 // in the frame of the heading at frame 0 and at 60 Hz:
@@ -33,27 +34,26 @@ constexpr EnumNames<CvaeCoordinates, 2> Names(CvaeCoordinates) {
   return {{{"tip", CvaeCoordinates::kTip}, {"ldp", CvaeCoordinates::kLdp}}};
 }
 
-// What the chain is made of; to leave parts of LDP's out is to see what they are worth.
+// Halves of the body: LDP's lower and its upper network.
+enum CvaeHalf { kLowerHalf, kUpperHalf };
+
+// The parts of the chain; to leave some of LDP's out is to see what they are worth.
 struct CvaeLayout {
   CvaeCoordinates coordinates = CvaeCoordinates::kTip;
   bool pendulum = true;  // false: the next pose from the pose alone; the network carries the hip
   bool halves = true;    // false: one network for all joints, in the place of the lower body's
 
-  const std::vector<int>& LowerJoints() const;
-  const std::vector<int>& UpperJoints() const;  // none without halves
-  int LowerFrame() const { return FrameSize(LowerJoints()); }
-  int UpperFrame() const { return halves ? FrameSize(UpperJoints()) : 0; }
-  int LowerPositions() const { return 3 * static_cast<int>(LowerJoints().size()); }
-  int UpperPositions() const { return 3 * static_cast<int>(UpperJoints().size()); }
-  int UpperCondition() const { return halves ? UpperFrame() + LowerPositions() : 0; }
+  int num_halves() const { return halves ? 2 : 1; }
+  const std::vector<int>& Joints(int half) const;
+  int Frame(int half) const { return 3 + 12 * static_cast<int>(Joints(half).size()); }
+  int Positions(int half) const { return 3 * static_cast<int>(Joints(half).size()); }
+  // Numbers that the networks of a half go on from.
+  int Condition(int half) const {
+    return Frame(half) + (half == kUpperHalf ? Positions(kLowerHalf) : 0);
+  }
   int PendulumFrame() const;  // 15 or 0
   // Where positions are measured from: without a pendulum there is no tip.
   CvaeCoordinates Origin() const { return pendulum ? coordinates : CvaeCoordinates::kLdp; }
-
- private:
-  static int FrameSize(const std::vector<int>& joints) {
-    return 3 + 12 * static_cast<int>(joints.size());
-  }
 };
 
 inline constexpr int kPendulumFrame = 15;
@@ -61,9 +61,7 @@ inline constexpr double kCvaeRate = 60.0;  // Hz
 
 // A column per frame. person and motion at 60 Hz (Resampled).
 Eigen::MatrixXf PendulumFrames(const RestorationInput& person, const CvaeLayout& layout);
-struct BodyFrames {
-  Eigen::MatrixXf lower, upper;  // upper: no rows without halves
-};
+using BodyFrames = std::vector<Eigen::MatrixXf>;  // of each half
 BodyFrames FramesOf(const RestorationInput& person, const BodyMotion& motion,
                     const CvaeLayout& layout);
 
@@ -71,26 +69,10 @@ BodyFrames FramesOf(const RestorationInput& person, const BodyMotion& motion,
 BodyMotion MotionFromFrames(const RestorationInput& person, const BodyFrames& frames,
                             const CvaeLayout& layout);
 
-// `frames` values at dt, by linear interpolation between values at from_dt; the last goes on.
-template <typename Value>
-std::vector<Value> ResampledPath(const std::vector<Value>& values, double from_dt, double dt,
-                                 int frames) {
-  std::vector<Value> other;
-  for (int t = 0; t < frames; ++t) {
-    const double at = std::clamp(t * dt / from_dt, 0.0, static_cast<double>(values.size() - 1));
-    const size_t low = static_cast<size_t>(at), high = std::min(low + 1, values.size() - 1);
-    const double share = at - static_cast<double>(low);
-    other.push_back((1.0 - share) * values[low] + share * values[high]);
-  }
-  return other;
-}
-
 // A person at another rate, by linear interpolation; unchanged where the rates agree.
 RestorationInput Resampled(const RestorationInput& person, double dt);
 // `frames` poses at dt of a motion at motion_dt.
 BodyMotion Resampled(const BodyMotion& motion, double motion_dt, double dt, int frames);
-
-// Bodies by LDP's chain, frame after frame, everybody together.
 
 // The networks of LDP's chain that are used after training: two samplers, which guess the
 // latent variable from pose and pendulum, and two decoders, mixtures of experts.
@@ -131,26 +113,28 @@ struct CvaeDecoder {
   Eigen::MatrixXf Evaluate(const Eigen::MatrixXf& z, const Eigen::MatrixXf& condition) const;
 };
 
+struct CvaeNetworks {
+  Scaling scaling;  // of the frames
+  CvaeSampler sampler;
+  CvaeDecoder decoder;
+};
+
 struct CvaeWeights {
   CvaeLayout layout;
-  Scaling lower, upper, pendulum;  // of what the layout has
-  CvaeSampler lower_sampler, upper_sampler;
-  CvaeDecoder lower_decoder, upper_decoder;
+  CvaeNetworks halves[2];  // of what the layout has
+  Scaling pendulum;
 };
 
 inline constexpr int kCvaeDraws = 3;  // of z in a frame, without a pendulum
 
-// One frame on: scaled frames of everybody, a column each, in place. pendulum: scaled, of the next
-// frame. draws: standard normal numbers, a column per person: kCvaeDraws times everybody where
-// there is no pendulum (z), everybody once (eps) or none (the mean) with samplers.
-void StepLower(const CvaeWeights& weights, const Eigen::MatrixXf& pendulum,
-               const Eigen::MatrixXf& draws, Eigen::MatrixXf* lower);
-// lower: already of the next frame. Nothing happens without halves.
-void StepUpper(const CvaeWeights& weights, const Eigen::MatrixXf& pendulum,
-               const Eigen::MatrixXf& draws, const Eigen::MatrixXf& lower, Eigen::MatrixXf* upper);
+// One frame of a half on: scaled frames of everybody, a column each, in place. pendulum: scaled, of
+// the next frame. draws: standard normal numbers, a column per person: kCvaeDraws times everybody
+// where there is no pendulum (z), everybody once (eps) or none (the mean) with samplers. lower: the
+// lower body's next frames, for the upper one.
+void Step(const CvaeWeights& weights, CvaeHalf half, const Eigen::MatrixXf& pendulum,
+          const Eigen::MatrixXf& draws, const Eigen::MatrixXf& lower, Eigen::MatrixXf* frames);
 
-TensorList ToTensors(const CvaeWeights& weights);
-CvaeWeights TakeCvae(const CvaeLayout& layout, TensorReader* reader);
+void ListTensors(const std::string& prefix, CvaeWeights* weights, TensorFields* fields);
 
 class CvaeRestoration : public Restoration {
  public:
@@ -159,7 +143,6 @@ class CvaeRestoration : public Restoration {
       : weights_(std::move(weights)), draws_(std::move(draws)) {}
   std::string_view kind() const override { return RowOf(RestorationKind::kCvae).name; }
   std::vector<BodyMotion> Restore(const std::vector<RestorationInput>& people) const override;
-  const CvaeWeights& weights() const { return weights_; }
   bool CanDraw() const { return weights_.layout.pendulum; }
   // From here on z is drawn from the samplers' Gaussians (CanDraw); every call of Restore takes its
   // normal numbers from `draws` anew.
@@ -169,8 +152,6 @@ class CvaeRestoration : public Restoration {
   }
 
  private:
-  int NumDraws() const;  // of a person, in a step of a half
-
   CvaeWeights weights_;
   std::function<NormalSource()> draws_;
   CvaeLatent latent_ = CvaeLatent::kMean;

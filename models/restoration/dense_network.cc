@@ -125,9 +125,9 @@ Scaling ScalingOf(const Eigen::MatrixXf& values, float smallest) {
   return scaling;
 }
 
-Eigen::MatrixXf TensorReader::Take(const std::string& name, int rows, int columns) {
+Eigen::MatrixXf TensorFields::Take(const std::string& name, int rows, int columns) {
   const Eigen::MatrixXf nothing = Eigen::MatrixXf::Zero(std::max(rows, 1), std::max(columns, 1));
-  for (const NamedTensor& tensor : tensors_) {
+  for (const NamedTensor& tensor : *read_) {
     if (tensor.name != name) continue;
     const Eigen::MatrixXf& values = tensor.values;
     if ((rows >= 0 && values.rows() != rows) || (columns >= 0 && values.cols() != columns)) {
@@ -141,22 +141,6 @@ Eigen::MatrixXf TensorReader::Take(const std::string& name, int rows, int column
   }
   Fail("the tensor " + name + " is missing");
   return nothing;
-}
-
-void AddTensors(const std::string& name, const DenseLayer& layer, TensorList* tensors) {
-  tensors->push_back({name + ".weights", layer.weights});
-  tensors->push_back({name + ".bias", layer.bias});
-}
-
-void AddTensors(const std::string& name, const DenseNetwork& network, TensorList* tensors) {
-  for (size_t i = 0; i < network.layers.size(); ++i) {
-    AddTensors(name + "." + std::to_string(i), network.layers[i], tensors);
-  }
-}
-
-void AddTensors(const std::string& name, const Scaling& scaling, TensorList* tensors) {
-  tensors->push_back({name + ".mean", scaling.mean});
-  tensors->push_back({name + ".spread", scaling.spread});
 }
 
 void TensorFields::Layer(const std::string& name, int inputs, int outputs, DenseLayer* layer) {

@@ -24,11 +24,20 @@ struct DenseLayer {
 
 // A column per sample.
 Eigen::MatrixXf Applied(const DenseLayer& layer, const Eigen::MatrixXf& values);
+// As Applied, by Eigen's own product, which rounds otherwise.
+inline Eigen::MatrixXf AppliedByEigen(const DenseLayer& layer, const Eigen::MatrixXf& values) {
+  return (layer.weights * values).colwise() + layer.bias;
+}
+
+// Rows of `above`, then those of `below`.
+inline Eigen::MatrixXf Stacked(const Eigen::MatrixXf& above, const Eigen::MatrixXf& below) {
+  Eigen::MatrixXf both(above.rows() + below.rows(), above.cols());
+  both << above, below;
+  return both;
+}
 
 struct DenseNetwork {
   std::vector<DenseLayer> layers;  // ELU between them
-
-  int num_inputs() const { return static_cast<int>(layers.front().weights.cols()); }
   // A column per sample.
   Eigen::MatrixXf Evaluate(const Eigen::MatrixXf& inputs) const;
 };
@@ -56,38 +65,26 @@ struct NamedTensor {
 };
 using TensorList = std::vector<NamedTensor>;
 
-// Takes tensors out by name and shape and remembers the first that is missing or misshapen.
-class TensorReader {
- public:
-  explicit TensorReader(const TensorList& tensors) : tensors_(tensors) {}
-
-  // rows or columns of -1: any. Not finite numbers are a problem too.
-  Eigen::MatrixXf Take(const std::string& name, int rows, int columns);
-  const std::string& problem() const { return problem_; }
-  void Fail(const std::string& problem) {
-    if (problem_.empty()) problem_ = problem;
-  }
-
- private:
-  const TensorList& tensors_;
-  std::string problem_;
-};
-
-// One list of what a network holds serves writing and reading it:
+// One list of what a network holds serves writing and reading it (AddTensors, TakeTensors):
 //
-//   void ListTensors(Weights* weights, TensorFields* fields) {
-//     fields->Layer("query", kInputs, width, &weights->query);
+//   void ListTensors(const std::string& prefix, Weights* weights, TensorFields* fields) {
+//     fields->Layer(prefix + "query", kInputs, width, &weights->query);
 //     ...
-// Written: appended to the list. Read: taken by name and shape.
+// Written: appended to the list. Read: taken by name and shape; the first that is missing or
+// misshapen is remembered.
 class TensorFields {
  public:
   explicit TensorFields(TensorList* written) : written_(written) {}
-  explicit TensorFields(TensorReader* read) : read_(read) {}
+  explicit TensorFields(const TensorList& read) : read_(&read) {}
 
-  template <typename Values>  // a matrix or a column
+  // A matrix or a column; rows or columns of -1: any. Not finite numbers are a problem too.
+  template <typename Values>
   void Matrix(const std::string& name, int rows, int columns, Values* values) {
-    if (written_ != nullptr) written_->push_back({name, *values});
-    if (read_ != nullptr) *values = read_->Take(name, rows, columns);
+    if (written_ != nullptr) {
+      written_->push_back({name, *values});
+    } else {
+      *values = Take(name, rows, columns);
+    }
   }
   void Layer(const std::string& name, int inputs, int outputs, DenseLayer* layer);
   // `layers` layers; sizes between them are what the tensors say.
@@ -98,17 +95,34 @@ class TensorFields {
   void Positive(const std::string& name, int rows, Values* values) {
     Matrix(name, rows, 1, values);
     if (read_ != nullptr && !(values->array() > 0.0f).all()) {
-      read_->Fail("the tensor " + name + " must be positive");
+      Fail("the tensor " + name + " must be positive");
     }
   }
+  const std::string& problem() const { return problem_; }
 
  private:
+  Eigen::MatrixXf Take(const std::string& name, int rows, int columns);
+  void Fail(const std::string& problem) {
+    if (problem_.empty()) problem_ = problem;
+  }
+
   TensorList* written_ = nullptr;
-  TensorReader* read_ = nullptr;
+  const TensorList* read_ = nullptr;
+  std::string problem_;
 };
 
-void AddTensors(const std::string& name, const DenseNetwork& network, TensorList* tensors);
-void AddTensors(const std::string& name, const DenseLayer& layer, TensorList* tensors);
-void AddTensors(const std::string& name, const Scaling& scaling, TensorList* tensors);
+template <typename Network>
+void AddTensors(const std::string& prefix, const Network& network, TensorList* tensors) {
+  Network written = network;
+  TensorFields fields(tensors);
+  ListTensors(prefix, &written, &fields);
+}
+
+// shape: a network of this structure, whose values do not matter.
+template <typename Network>
+Network TakeTensors(const std::string& prefix, Network shape, TensorFields* read) {
+  ListTensors(prefix, &shape, read);
+  return shape;
+}
 
 }  // namespace pushid

@@ -77,7 +77,7 @@ constexpr int kMostSteps = 30;
 
 using Features = Eigen::Matrix<double, kStateFeatures, 1>;
 
-// What others see of one person at one frame.
+// A person at one frame as others see them.
 struct Look {
   Eigen::Vector2d place = Eigen::Vector2d::Zero(), faces = Eigen::Vector2d::Zero();
   double gesture = 0.0;  // m/s

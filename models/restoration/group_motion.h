@@ -12,7 +12,7 @@
 
 namespace pushid {
 
-// What people in a crowd do, frame by frame, as one of six symbols:
+// States of people in a crowd, frame by frame, as one of six symbols:
 //
 //   3 * push + posture
 //   posture  2 step: an ankle's horizontal speed is above 0.35 m/s; else
@@ -47,7 +47,7 @@ constexpr EnumNames<SocialState, kSocialStates> Names(SocialState) {
 std::vector<Symbols> SocialStates(const std::vector<BodyMotion>& people, double dt);
 StateFunction SocialStateFunction();
 
-// How natural motions look: normalized directional motion similarity (NDMS, Tanke et al.,
+// Naturalness of motions: normalized directional motion similarity (NDMS, Tanke et al.,
 // "Intention-based long-term human motion anticipation", 3DV 2021; as SDM uses it).
 //
 // A word is 20 frames (at 60 Hz) of 17 joints, seen from the floor below the middle of the hip

@@ -9,11 +9,22 @@
 namespace pushid {
 namespace {
 
+using Eigen::Vector3d;
+
+// True where a restored ankle is low and slow; floor: its own height at frame 0.
+bool Rests(const Vector3d& ankle, const Vector3d& before, double floor, double dt,
+           const PostprocessOptions& options) {
+  const double speed = (ankle - before).head<2>().norm() / dt;
+  return ankle.z() < floor + options.contact_height && speed < options.contact_speed;
+}
+
+Vector3d Flat(const Vector3d& v) { return {v.x(), v.y(), 0.0}; }
+
 // Where one ankle is held, frame by frame.
 class FootLock {
  public:
   // floor: the ankle's own height at frame 0; place, before: where it is now, and was.
-  FootLock(double floor, const Eigen::Vector3d& place, const Eigen::Vector3d& before, double dt,
+  FootLock(double floor, const Vector3d& place, const Vector3d& before, double dt,
            const PostprocessOptions& options)
       : options_(options),
         floor_(floor),
@@ -23,19 +34,20 @@ class FootLock {
         locked_(Rests(place, before, floor, dt, options)) {}
 
   // The horizontal correction of an ankle that the restoration puts at `ankle`.
-  Eigen::Vector3d Correction(const Eigen::Vector3d& ankle) {
+  Vector3d Correction(const Vector3d& ankle) {
     const bool standing = Rests(ankle, before_, floor_, dt_, options_);
     before_ = ankle;
-    if (locked_ && (!standing || Drift(ankle) > options_.release_drift)) Release(ankle);
-    if (!locked_ && standing && fading_ == 0) Lock(ankle);
+    const Vector3d pull = Flat(place_ - ankle);
+    if (locked_ && (!standing || pull.norm() > options_.release_drift)) LetGo(pull);
+    if (!locked_ && standing && fading_ == 0) locked_ = true, place_ = ankle;
     if (locked_) return Flat(place_ - ankle);
-    if (fading_ == 0) return Eigen::Vector3d::Zero();
+    if (fading_ == 0) return Vector3d::Zero();
     --fading_;
     return left_over_ * fading_ / options_.release_frames;
   }
 
-  // The leg cannot reach: what it pulled so far fades.
-  void LetGo(const Eigen::Vector3d& correction) {
+  // The pull so far fades.
+  void LetGo(const Vector3d& correction) {
     locked_ = false;
     left_over_ = correction;
     fading_ = options_.release_frames;
@@ -43,23 +55,12 @@ class FootLock {
   bool locked() const { return locked_; }
 
  private:
-  static Eigen::Vector3d Flat(const Eigen::Vector3d& v) { return {v.x(), v.y(), 0.0}; }
-  double Drift(const Eigen::Vector3d& ankle) const { return Flat(place_ - ankle).norm(); }
-  void Release(const Eigen::Vector3d& ankle) { LetGo(Flat(place_ - ankle)); }
-  void Lock(const Eigen::Vector3d& ankle) {
-    locked_ = true;
-    place_ = ankle;
-  }
-
   const PostprocessOptions& options_;
   const double floor_, dt_;
-  Eigen::Vector3d place_, before_;
-  Eigen::Vector3d left_over_ = Eigen::Vector3d::Zero();
+  Vector3d place_, before_, left_over_ = Vector3d::Zero();
   bool locked_;
   int fading_ = 0;
 };
-
-using Eigen::Vector3d;
 
 constexpr double kClearance = 0.05;  // m, of an ankle in the middle of its swing, at least
 
@@ -80,12 +81,6 @@ std::vector<double> LiftsOf(const std::vector<FootPath>& feet, bool left) {
 
 }  // namespace
 
-bool Rests(const Eigen::Vector3d& ankle, const Eigen::Vector3d& before, double floor, double dt,
-           const PostprocessOptions& options) {
-  const double speed = (ankle - before).head<2>().norm() / dt;
-  return ankle.z() < floor + options.contact_height && speed < options.contact_speed;
-}
-
 void FadeResidual(const Pose& pose, int frames, BodyMotion* motion, int now) {
   const int size = static_cast<int>(motion->size());
   if (now >= size) return;
@@ -105,18 +100,18 @@ void LockFeet(const Pose& first_pose, double dt, const PostprocessOptions& optio
               BodyMotion* motion, int now) {
   for (const bool left : {false, true}) {
     const int ankle = left ? kLeftAnkle : kRightAnkle;
-    const Eigen::Vector3d first = first_pose.col(ankle);
-    const Eigen::Vector3d place = now > 0 ? Eigen::Vector3d((*motion)[now].col(ankle)) : first;
-    const Eigen::Vector3d before = now > 0 ? Eigen::Vector3d((*motion)[now - 1].col(ankle)) : first;
+    const Vector3d first = first_pose.col(ankle);
+    const Vector3d place = now > 0 ? Vector3d((*motion)[now].col(ankle)) : first;
+    const Vector3d before = now > 0 ? Vector3d((*motion)[now - 1].col(ankle)) : first;
     FootLock lock(first.z(), place, before, dt, options);
     for (size_t t = now + 1; t < motion->size(); ++t) {
       Pose& pose = (*motion)[t];
-      const Eigen::Vector3d at = pose.col(ankle);
-      const Eigen::Vector3d correction = lock.Correction(at);
+      const Vector3d at = pose.col(ankle);
+      const Vector3d correction = lock.Correction(at);
       if (correction.isZero(0.0)) continue;
       const double missed = ReachWithLeg(left, at + correction, &pose);
       if (missed > options.out_of_reach && lock.locked()) {
-        Eigen::Vector3d reached = pose.col(ankle) - at;
+        Vector3d reached = pose.col(ankle) - at;
         reached.z() = 0.0;
         lock.LetGo(reached);
       }

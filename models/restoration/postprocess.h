@@ -26,10 +26,6 @@ struct PostprocessOptions {
   double out_of_reach = 0.005;  // m by which a leg may miss the place that it stands on
 };
 
-// Whether a restored ankle is low and slow; floor: its own height at frame 0.
-bool Rests(const Eigen::Vector3d& ankle, const Eigen::Vector3d& before, double floor, double dt,
-           const PostprocessOptions& options);
-
 // now: the frame from which on; `pose` is what was seen there. Feet that move or are off the ground
 // then are not locked; at frame 0 people stand.
 void FadeResidual(const Pose& pose, int frames, BodyMotion* motion, int now = 0);

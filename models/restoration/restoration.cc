@@ -23,38 +23,25 @@ FramePath<Vector4<double>> TurnedPath(const RestorationInput& person, double hea
   return {std::move(turned), person.dt};
 }
 
-namespace {
-
-// The impulses of everybody who is pushed together, as one push on the first of them.
-SeenPush PushOf(const Scene& scene, const std::vector<Pose>& first_poses) {
-  SeenPush seen;
-  if (scene.pushes.empty()) return seen;
-  for (const ScenePush& push : scene.pushes) {
-    const double duration = static_cast<double>(push.force.size()) * scene.dt;
-    const double mass = scene.people[push.person].body.mass;
-    seen.velocity.head<2>() += push.mean.head<2>() * (duration / mass);
-    seen.duration = std::max(seen.duration, duration);
-  }
-  seen.place = first_poses[scene.pushes.front().person].col(kBodyHip);
-  return seen;
-}
-
-}  // namespace
-
 std::vector<RestorationInput> PeopleOf(const Scene& scene, const std::vector<Pose>& first_poses) {
-  double push_start = 0.0;
-  for (size_t i = 0; i < scene.pushes.size(); ++i) {
-    const double start = scene.pushes[i].start_frame * scene.dt;
-    push_start = i == 0 ? start : std::min(push_start, start);
+  RestorationInput alike;  // in what is the same for everybody
+  alike.dt = scene.dt;
+  // The impulses of everybody who is pushed together, as one push on the first of them.
+  SeenPush& seen = alike.push;
+  for (const ScenePush& push : scene.pushes) {
+    const bool is_first = &push == &scene.pushes.front();
+    const double start = push.start_frame * scene.dt;
+    const double duration = static_cast<double>(push.force.size()) * scene.dt;
+    alike.push_start = is_first ? start : std::min(alike.push_start, start);
+    seen.velocity.head<2>() +=
+        push.mean.head<2>() * (duration / scene.people[push.person].body.mass);
+    seen.duration = std::max(seen.duration, duration);
+    if (is_first) seen.place = first_poses[push.person].col(kBodyHip);
   }
-  const SeenPush push = PushOf(scene, first_poses);
-  std::vector<RestorationInput> people(scene.num_people());
+  std::vector<RestorationInput> people(scene.num_people(), alike);
   for (int n = 0; n < scene.num_people(); ++n) {
     people[n].first_pose = first_poses[n];
     people[n].body = scene.people[n].body;
-    people[n].dt = scene.dt;
-    people[n].push_start = push_start;
-    people[n].push = push;
   }
   return people;
 }

@@ -45,12 +45,7 @@ inline constexpr RestorationKindRow kRestorationKinds[] = {
 constexpr const auto& Names(RestorationKind) { return kRestorationKinds; }
 static_assert(RowsAreInOrder(kRestorationKinds), "RowOf finds a row by its value");
 
-// Names of the kinds that can be trained, for messages: "window or cvae".
-inline std::string TrainedRestorationKinds() {
-  return AnyName<RestorationKind>([](const RestorationKindRow& row) { return row.trained; });
-}
-
-// What a restoration is told of the motion, besides the first pose, mass and size.
+// Information that a restoration has of the motion, besides the first pose, mass and size.
 enum class RestorationView {
   kPendulum,    // the person's own pendulum
   kNeighbours,  // those of the neighbours too, where the kind sees them
@@ -63,7 +58,7 @@ constexpr EnumNames<RestorationView, 3> Names(RestorationView) {
            {"pose", RestorationView::kPose}}};
 }
 
-// What is pushed from outside: all that a restoration without pendulums is told of the motion.
+// The push from outside: all that a restoration without pendulums is told of the motion.
 struct SeenPush {
   Vector3<double> velocity =
       Vector3<double>::Zero();                      // m/s: impulse over the mass of who is pushed
@@ -127,8 +122,17 @@ Vector3<double> TipAt(const RestorationInput& person, int frame);
 // A pendulum turned about z: the cart's place and the rod's direction are.
 Vector4<double> TurnedPendulum(const Vector4<double>& q, double angle);
 
-// Values frame by frame with their rates, read at any frame; beyond the ends the ends are seen.
-// Reading is linear, so that a path of derivatives is read as the path itself.
+// Values frame by frame read at any frame, linearly; beyond the ends the ends are seen.
+template <typename Value>
+Value ReadAt(const std::vector<Value>& values, double frame) {
+  const double at = std::clamp(frame, 0.0, static_cast<double>(values.size() - 1));
+  const size_t low = static_cast<size_t>(at), high = std::min(low + 1, values.size() - 1);
+  const double share = at - static_cast<double>(low);
+  if (share == 0.0) return values[low];
+  return (1.0 - share) * values[low] + share * values[high];
+}
+
+// Values with their rates: a path of derivatives is read as the path itself.
 template <typename Value>
 class FramePath {
  public:
@@ -141,17 +145,10 @@ class FramePath {
   }
   int num_frames() const { return static_cast<int>(values_.size()); }
   const Value& First() const { return values_.front(); }
-  Value At(double frame) const { return Read(values_, frame); }
-  Value RateAt(double frame) const { return Read(rates_, frame); }
+  Value At(double frame) const { return ReadAt(values_, frame); }
+  Value RateAt(double frame) const { return ReadAt(rates_, frame); }
 
  private:
-  static Value Read(const std::vector<Value>& values, double frame) {
-    const double at = std::clamp(frame, 0.0, static_cast<double>(values.size() - 1));
-    const size_t low = static_cast<size_t>(at), high = std::min(low + 1, values.size() - 1);
-    const double share = at - static_cast<double>(low);
-    if (share == 0.0) return values[low];
-    return (1.0 - share) * values[low] + share * values[high];
-  }
   std::vector<Value> values_, rates_;
 };
 

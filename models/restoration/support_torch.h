@@ -18,26 +18,26 @@
 
 namespace pushid {
 
+using torch::Tensor;
+using torch::optim::AdamW;
+
 // A row per sample, as LibTorch's layers want them; Eigen's columns are such rows in memory.
-inline torch::Tensor ToTensor(const Eigen::MatrixXf& columns) {
-  return torch::from_blob(const_cast<float*>(columns.data()), {columns.cols(), columns.rows()},
-                          torch::kFloat32)
+inline Tensor ToTensor(const Eigen::MatrixXf& columns) {
+  return torch::from_blob(const_cast<float*>(columns.data()), {columns.cols(), columns.rows()})
       .clone();
 }
-
-inline torch::Tensor ToTensor(const Eigen::VectorXf& values) {
-  return torch::from_blob(const_cast<float*>(values.data()), {values.size()}, torch::kFloat32)
-      .clone();
+inline Tensor ToTensor(const Eigen::VectorXf& values) {
+  return torch::from_blob(const_cast<float*>(values.data()), {values.size()}).clone();
 }
 
-inline Eigen::MatrixXf ToMatrix(const torch::Tensor& tensor) {
-  const torch::Tensor rows = tensor.detach().to(torch::kFloat32).contiguous();
+inline Eigen::MatrixXf ToMatrix(const Tensor& tensor) {
+  const Tensor rows = tensor.detach().to(torch::kFloat32).contiguous();
   using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const int64_t columns = rows.dim() == 1 ? 1 : rows.size(1);
   return Eigen::Map<const RowMajor>(rows.data_ptr<float>(), rows.size(0), columns);
 }
 
-inline Eigen::VectorXf ToVector(const torch::Tensor& tensor) { return ToMatrix(tensor).col(0); }
+inline Eigen::VectorXf ToVector(const Tensor& tensor) { return ToMatrix(tensor).col(0); }
 
 inline DenseLayer ToLayer(const torch::nn::Linear& linear) {
   return {ToMatrix(linear->weight), ToVector(linear->bias)};
@@ -51,37 +51,26 @@ inline double OneCycle(double done) {
   return floor + (1.0 - floor) * 0.5 * (1.0 + std::cos(M_PI * phase));
 }
 
-inline void SetLearningRate(torch::optim::AdamW* optimizer, double rate) {
+inline void SetLearningRate(AdamW* optimizer, double rate) {
   for (auto& group : optimizer->param_groups()) {
     static_cast<torch::optim::AdamWOptions&>(group.options()).lr(rate);
   }
 }
 
-inline void Improve(torch::optim::AdamW* optimizer, const torch::Tensor& loss) {
+// clip: the gradient's largest norm, over `parameters`; 0: it is not held.
+inline void Improve(AdamW* optimizer, const Tensor& loss,
+                    const std::vector<Tensor>& parameters = {}, double clip = 0.0) {
   optimizer->zero_grad();
   loss.backward();
-  optimizer->step();
-}
-// The gradient held within `clip`.
-inline void Improve(torch::optim::AdamW* optimizer, const torch::Tensor& loss,
-                    const std::vector<torch::Tensor>& parameters, double clip) {
-  optimizer->zero_grad();
-  loss.backward();
-  torch::nn::utils::clip_grad_norm_(parameters, clip);
+  if (clip > 0.0) torch::nn::utils::clip_grad_norm_(parameters, clip);
   optimizer->step();
 }
 
 // Both modules are of one shape.
 inline void CopyWeights(const torch::nn::Module& from, torch::nn::Module* to) {
   torch::NoGradGuard no_grad;
-  const std::vector<torch::Tensor> source = from.parameters(), target = to->parameters();
+  const std::vector<Tensor> source = from.parameters(), target = to->parameters();
   for (size_t i = 0; i < source.size(); ++i) target[i].copy_(source[i]);
-}
-
-inline int64_t NumNumbers(const std::vector<torch::Tensor>& parameters) {
-  int64_t count = 0;
-  for (const torch::Tensor& parameter : parameters) count += parameter.numel();
-  return count;
 }
 
 inline void StartTraining(const TrainerOptions& options) {
@@ -92,98 +81,85 @@ inline void StartTraining(const TrainerOptions& options) {
   torch::manual_seed(options.seed);
 }
 
-// The state of a training: one list of its fields, Torch::Keep(StateWriter or StateReader*), serves
-// writing and reading. The random generator belongs to every state.
-class StateWriter {
+// The state of a training, written or read by one list of its fields (TorchTraining::Keep). The
+// random generator belongs to every state.
+class StateArchive {
  public:
-  static constexpr bool kReads = false;
+  StateArchive() = default;  // writes
+  explicit StateArchive(const std::string& state) : reads_(true) {
+    std::istringstream stream(state);
+    in_.load_from(stream);
+  }
+  bool reads() const { return reads_; }
+
   template <typename Kept>
   void Part(const char* name, Kept* part) {  // a module or an optimizer
-    torch::serialize::OutputArchive of_part;
-    part->save(of_part);
-    archive_.write(name, of_part);
+    if (reads_) {
+      torch::serialize::InputArchive of_part;
+      in_.read(name, of_part);
+      part->load(of_part);
+    } else {
+      torch::serialize::OutputArchive of_part;
+      part->save(of_part);
+      out_.write(name, of_part);
+    }
   }
-  void Tensor(const char* name, torch::Tensor* tensor) { archive_.write(name, *tensor); }
+  void Value(const char* name, Tensor* tensor) {
+    if (reads_) return in_.read(name, *tensor);
+    out_.write(name, *tensor);
+  }
   template <typename... Number>
   void Numbers(const char* name, Number*... numbers) {
-    archive_.write(name, torch::tensor({static_cast<double>(*numbers)...}, torch::kFloat64));
-  }
-  std::string Finish() {
-    archive_.write("random", at::detail::getDefaultCPUGenerator().get_state());
-    std::ostringstream stream;
-    archive_.save_to(stream);
-    return stream.str();
-  }
-
- private:
-  torch::serialize::OutputArchive archive_;
-};
-
-class StateReader {
- public:
-  static constexpr bool kReads = true;
-  explicit StateReader(const std::string& state) {
-    std::istringstream stream(state);
-    archive_.load_from(stream);
-  }
-  template <typename Kept>
-  void Part(const char* name, Kept* part) {
-    torch::serialize::InputArchive of_part;
-    archive_.read(name, of_part);
-    part->load(of_part);
-  }
-  void Tensor(const char* name, torch::Tensor* tensor) { archive_.read(name, *tensor); }
-  template <typename... Number>
-  void Numbers(const char* name, Number*... numbers) {
-    torch::Tensor all;
-    archive_.read(name, all);
+    Tensor all = torch::tensor({static_cast<double>(*numbers)...}, torch::kFloat64);
+    Value(name, &all);
     all = all.reshape({-1});
     int64_t i = 0;
     ((*numbers = static_cast<Number>(all[i++].item<double>())), ...);
   }
-  void Finish() {
-    torch::Tensor random;
-    archive_.read("random", random);
+  void Random() {
     auto generator = at::detail::getDefaultCPUGenerator();
-    generator.set_state(random);
+    Tensor random = generator.get_state();
+    Value("random", &random);
+    if (reads_) generator.set_state(random);
+  }
+  std::string Written() {
+    std::ostringstream stream;
+    out_.save_to(stream);
+    return stream.str();
   }
 
  private:
-  torch::serialize::InputArchive archive_;
+  bool reads_ = false;
+  torch::serialize::InputArchive in_;
+  torch::serialize::OutputArchive out_;
 };
 
-template <typename Torch>
-std::string StateOf(Torch* torch) {
-  StateWriter writer;
-  torch->Keep(&writer);
-  return writer.Finish();
-}
+// A trainer in LibTorch, whose state is what it lists.
+template <typename Interface>
+struct TorchTraining : Interface {
+  virtual void Keep(StateArchive* state) = 0;
 
-// False when the state is another training's.
-template <typename Torch>
-bool ResumeFrom(const std::string& state, Torch* torch) {
-  try {
-    StateReader reader(state);
-    torch->Keep(&reader);
-    reader.Finish();
-    return true;
-  } catch (const std::exception&) {
-    return false;
+  std::string State() override {
+    StateArchive state;
+    Keep(&state);
+    state.Random();
+    return state.Written();
   }
-}
-
-// State and Resume of a run (Trainer::Run) that lists its fields.
-template <typename Run, typename Self>
-struct KeptRun : Run {
-  std::string State() override { return StateOf(static_cast<Self*>(this)); }
-  bool Resume(const std::string& state) override {
-    return ResumeFrom(state, static_cast<Self*>(this));
+  bool Resume(const std::string& kept) override {
+    try {
+      StateArchive state(kept);
+      Keep(&state);
+      state.Random();
+      return true;
+    } catch (const std::exception&) {
+      return false;
+    }
   }
 };
 
 // Training by steps, with a point of the curve for every round of them. A round is of one stage.
-template <typename Run, typename Self>
-struct StepsRun : KeptRun<Run, Self> {
+template <typename Interface>
+struct StepsTraining : TorchTraining<Interface> {
   int step = 0;
 
   virtual int AllSteps() const = 0;
@@ -206,10 +182,10 @@ struct StepsRun : KeptRun<Run, Self> {
 };
 
 // As LibTorch's AdamW has it.
-inline std::unique_ptr<torch::optim::AdamW> MakeOptimizer(
-    const std::vector<torch::Tensor>& parameters, double rate, double weight_decay) {
-  return std::make_unique<torch::optim::AdamW>(
-      parameters, torch::optim::AdamWOptions(rate).weight_decay(weight_decay));
+inline std::unique_ptr<AdamW> MakeOptimizer(const std::vector<Tensor>& parameters, double rate,
+                                            double weight_decay) {
+  return std::make_unique<AdamW>(parameters,
+                                 torch::optim::AdamWOptions(rate).weight_decay(weight_decay));
 }
 
 }  // namespace pushid

@@ -135,6 +135,13 @@ std::vector<BodyMotion> WindowRestoration::Restore(
   return motions;
 }
 
+void ListTensors(const std::string& prefix, WindowWeights* weights, TensorFields* fields) {
+  const int inputs = WindowInputRows(weights->view);
+  fields->Scales(prefix + "inputs", inputs, &weights->inputs);
+  fields->Network(prefix + "network", 3, inputs, WindowOutputRows(weights->view),
+                  &weights->network);
+}
+
 int WindowInputRows(RestorationView view) {
   if (view == RestorationView::kPose) return kPersonInputs + kPushInputs;
   return kWindowPendulumInputs + kPersonInputs +

@@ -14,6 +14,7 @@ struct WindowWeights {
   Scaling inputs;
   DenseNetwork network;  // outputs in m
 };
+void ListTensors(const std::string& prefix, WindowWeights* weights, TensorFields* fields);
 
 class WindowRestoration : public Restoration {
  public:
@@ -45,7 +46,6 @@ class WindowRestoration : public Restoration {
 // way of the hip since frame 0, 3, which otherwise goes with the rod's tip.
 
 inline constexpr int kWindowPendulumInputs = 80;
-inline constexpr int kWindowRodInput = kWindowPendulumInputs + 2;  // the row of the rod's length
 
 int WindowInputRows(RestorationView view);
 int WindowOutputRows(RestorationView view);

@@ -122,14 +122,17 @@ inline CvaeWeights RandomCvae(uint64_t seed = 1, const CvaeLayout& layout = {}) 
   };
   CvaeWeights weights;
   weights.layout = layout;
-  weights.lower = UnitScaling(layout.LowerFrame());
-  weights.upper = UnitScaling(layout.UpperFrame());
+  for (int half = 0; half < layout.num_halves(); ++half) {
+    weights.halves[half].scaling = UnitScaling(layout.Frame(half));
+  }
   weights.pendulum = UnitScaling(layout.PendulumFrame());
-  if (layout.pendulum) weights.lower_sampler = sampler(layout.LowerFrame());
-  if (layout.pendulum && layout.halves) weights.upper_sampler = sampler(layout.UpperCondition());
-  weights.lower_decoder = decoder(layout.LowerFrame(), layout.LowerFrame());
+  if (layout.pendulum) weights.halves[kLowerHalf].sampler = sampler(layout.Frame(kLowerHalf));
+  if (layout.pendulum && layout.halves)
+    weights.halves[kUpperHalf].sampler = sampler(layout.Condition(kUpperHalf));
+  weights.halves[kLowerHalf].decoder = decoder(layout.Frame(kLowerHalf), layout.Frame(kLowerHalf));
   if (layout.halves) {
-    weights.upper_decoder = decoder(layout.UpperCondition(), layout.UpperFrame());
+    weights.halves[kUpperHalf].decoder =
+        decoder(layout.Condition(kUpperHalf), layout.Frame(kUpperHalf));
   }
   return weights;
 }

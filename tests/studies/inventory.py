@@ -29,7 +29,7 @@ FEATURES = [
     ("noise, likelihoods, paths", 1600, 1389, r"models/(process_noise|input_|pendulum_filter)|residuals/cost_functions/likelihood|ident/(solver/likelihood|forecasts/(most_probable|path))|apps/pushid_path"),
     ("diffusion", 1500, 1616, r"models/generators/diffusion|apps/flags/.*diffusion"),
     ("particles", 2400, 2233, r"models/(particles|generators/particle)|ident/forecasts/forecast_"),
-    ("generators' files, training, programs", 1600, 2127, r"models/generators|ident/(generators|training/generator)|apps/(generate|pushid_generate|pushid_train_generator|flags/(generate|train_generator|published))"),
+    ("generators' files, training, programs", 1600, 2127, r"models/generators|ident/(generators|training/generator)|apps/(generate|pushid_generate|pushid_train_generator|flags/(generate|train_generator|training|published))"),
     ("group metrics", 1400, 1347, r"ident/(validation/(group_|hip_group)|forecasts/social|diagnostics/social)|models/restoration/(group_motion|state_classifier|social)"),
     ("restoration", 3500, 4603, r"models/restoration|ident/(training|bodies/restoration_files)|apps/(pushid_train_restoration|flags/(.*restoration|postprocess|body))"),
     ("bodies, animation", 2000, 2008, r"ident/bodies|apps/pushid_animate|ident/figures/moving"),

@@ -37,10 +37,10 @@ void ExpectSameTensors(const DiffusionNetwork& a, const DiffusionNetwork& b) {
 }
 
 TEST(DiffusionTrainerTest, Learns) {
-  DiffusionTrainer trainer(PushedGroups(), PushedGroups(), QuickDiffusion(100));
-  const TrainingPoint first = trainer.RunRound();
+  const auto trainer = DiffusionTrainer::Make(PushedGroups(), PushedGroups(), QuickDiffusion(100));
+  const TrainingPoint first = trainer->RunRound();
   TrainingPoint last = first;
-  while (!trainer.Done()) last = trainer.RunRound();
+  while (!trainer->Done()) last = trainer->RunRound();
   EXPECT_EQ(last.epoch, 100);
   EXPECT_LT(last.validation_loss, 0.9 * first.validation_loss);
 }
@@ -48,20 +48,20 @@ TEST(DiffusionTrainerTest, Learns) {
 TEST(DiffusionTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
   const DiffusionTrainingOptions options = QuickDiffusion(2 * kStepsOfRound);
   const auto trained = [&options] {
-    DiffusionTrainer trainer(PushedGroups(), PushedGroups(), options);
-    while (!trainer.Done()) trainer.RunRound();
-    return trainer.Network();
+    const auto trainer = DiffusionTrainer::Make(PushedGroups(), PushedGroups(), options);
+    while (!trainer->Done()) trainer->RunRound();
+    return trainer->Network();
   };
   const DiffusionNetwork one = trained();
   ExpectSameTensors(one, trained());
-  DiffusionTrainer broken(PushedGroups(), PushedGroups(), options);
-  broken.RunRound();
-  const std::string state = broken.State();
-  DiffusionTrainer resumed(PushedGroups(), PushedGroups(), options);
-  ASSERT_TRUE(resumed.Resume(state));
-  while (!resumed.Done()) resumed.RunRound();
-  ExpectSameTensors(one, resumed.Network());
-  EXPECT_FALSE(resumed.Resume("no state"));
+  const auto broken = DiffusionTrainer::Make(PushedGroups(), PushedGroups(), options);
+  broken->RunRound();
+  const std::string state = broken->State();
+  const auto resumed = DiffusionTrainer::Make(PushedGroups(), PushedGroups(), options);
+  ASSERT_TRUE(resumed->Resume(state));
+  while (!resumed->Done()) resumed->RunRound();
+  ExpectSameTensors(one, resumed->Network());
+  EXPECT_FALSE(resumed->Resume("no state"));
 }
 
 void ExpectEigenIsLibTorch(const DiffusionStructure& structure, const std::string& name) {
@@ -69,14 +69,14 @@ void ExpectEigenIsLibTorch(const DiffusionStructure& structure, const std::strin
   options.structure = structure;
   if (structure.frame == MotionFrame::kOwn) options.joint_weight = 0.0;
   const std::vector<ObservedGroup> groups = PushedGroups();
-  DiffusionTrainer trainer(groups, {}, options);
-  while (!trainer.Done()) trainer.RunRound();
-  const DiffusionNetwork network = trainer.Network();
+  const auto trainer = DiffusionTrainer::Make(groups, {}, options);
+  while (!trainer->Done()) trainer->RunRound();
+  const DiffusionNetwork network = trainer->Network();
   const GroupFeatures features = FeaturesOf(groups[1], network.scales, 3, 37, options.dt);
   Random random(2);
   const Eigen::MatrixXf noisy =
       RandomMatrix(structure.NumMotion(), 37 * features.people, 1.0, &random);
-  const Eigen::MatrixXf torch = trainer.Estimate(features, noisy, 440.0);
+  const Eigen::MatrixXf torch = trainer->Estimate(features, noisy, 440.0);
   const Eigen::MatrixXf eigen = GroupDenoiser(network, features).Estimate(noisy, 440.0);
   EXPECT_LT((torch - eigen).cwiseAbs().maxCoeff(), 1e-5f) << name;
 }
@@ -103,7 +103,7 @@ TEST(DiffusionTrainerTest, Equation4ByHand) {
   DiffusionTrainingOptions options = QuickDiffusion(0);
   options.joint_weight = options.difference_weight = 0.0;
   const auto loss = [&] {
-    return DiffusionTrainer({group}, {group}, options).RunRound().validation_loss;
+    return DiffusionTrainer::Make({group}, {group}, options)->RunRound().validation_loss;
   };
   options.observed_weight = 1.0;
   EXPECT_NEAR(loss(), 5.69210 / (6 * 66), 1e-6);

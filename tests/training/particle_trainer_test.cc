@@ -29,9 +29,10 @@ ParticleTrainingOptions QuickParticles() {
 }
 
 ParticleNetwork Trained(const ParticleTrainingOptions& options) {
-  ParticleTrainer trainer(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
-  while (!trainer.Done()) trainer.RunRound();
-  return trainer.Network();
+  const auto trainer =
+      ParticleTrainer::Make(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
+  while (!trainer->Done()) trainer->RunRound();
+  return trainer->Network();
 }
 
 void ExpectSame(const ParticleNetwork& a, const ParticleNetwork& b) {
@@ -47,10 +48,11 @@ TEST(ParticleTrainerTest, LearnsBeyondConstantVelocity) {
   ParticleTrainingOptions options = QuickParticles();
   options.steps = 300;
   options.noise_steps = 0;
-  ParticleTrainer trainer(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
-  const TrainingPoint first = trainer.RunRound();
+  const auto trainer =
+      ParticleTrainer::Make(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
+  const TrainingPoint first = trainer->RunRound();
   TrainingPoint last = first;
-  while (!trainer.Done()) last = trainer.RunRound();
+  while (!trainer->Done()) last = trainer->RunRound();
   EXPECT_LT(last.validation_loss, 0.5 * first.validation_loss);
   EXPECT_EQ(last.epoch, 300);
   EXPECT_EQ(last.stage, "drift");
@@ -62,16 +64,18 @@ TEST(ParticleTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
   const ParticleNetwork one = Trained(options);
   ExpectSame(one, Trained(options));
   for (int rounds : {1, 2}) {  // within the drift, and where the noise begins
-    ParticleTrainer broken(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
-    for (int i = 0; i < rounds; ++i) broken.RunRound();
-    const std::string state = broken.State();
-    ParticleTrainer resumed(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
-    ASSERT_TRUE(resumed.Resume(state));
-    while (!resumed.Done()) resumed.RunRound();
-    ExpectSame(one, resumed.Network());
+    const auto broken =
+        ParticleTrainer::Make(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
+    for (int i = 0; i < rounds; ++i) broken->RunRound();
+    const std::string state = broken->State();
+    const auto resumed =
+        ParticleTrainer::Make(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
+    ASSERT_TRUE(resumed->Resume(state));
+    while (!resumed->Done()) resumed->RunRound();
+    ExpectSame(one, resumed->Network());
   }
-  ParticleTrainer other(FourParticles(), Motions(6, 0.0f), {}, options);
-  EXPECT_FALSE(other.Resume("no state"));
+  const auto other = ParticleTrainer::Make(FourParticles(), Motions(6, 0.0f), {}, options);
+  EXPECT_FALSE(other->Resume("no state"));
 }
 
 TEST(ParticleTrainerTest, EigenForecastsWhatLibTorchDoes) {
@@ -88,12 +92,12 @@ TEST(ParticleTrainerTest, EigenForecastsWhatLibTorchDoes) {
     options.structure = structures[i];
     options.steps = 30;
     options.noise_steps = 0;
-    ParticleTrainer trainer(FourParticles(), Motions(6, 0.0f), {}, options);
-    while (!trainer.Done()) trainer.RunRound();
+    const auto trainer = ParticleTrainer::Make(FourParticles(), Motions(6, 0.0f), {}, options);
+    while (!trainer->Done()) trainer->RunRound();
     const std::vector<ObservedMotion> people = {{SwayingMotion(12, 0.5f)}};
-    const ParticleNetwork network = trainer.Network();
+    const ParticleNetwork network = trainer->Network();
     ParticleRollout rollout(network, people);
-    const Trajectories torch = trainer.Forecast(people[0], 8);
+    const Trajectories torch = trainer->Forecast(people[0], 8);
     for (int t = 0; t < 8; ++t) {
       EXPECT_LT((rollout.Step() - torch.col(t)).cwiseAbs().maxCoeff(), 1e-5f) << i << " " << t;
     }
@@ -128,12 +132,12 @@ TEST(ParticleTrainerTest, Equation6TrainsDriftAndNoiseTogether) {
   options.learning_rate = 1e-2;
   const auto trained = [&](NoiseLoss loss) {
     options.noise_loss = loss;
-    ParticleTrainer trainer(FourParticles(), motions, {}, options);
+    const auto trainer = ParticleTrainer::Make(FourParticles(), motions, {}, options);
     TrainingPoint point;
-    while (!trainer.Done()) point = trainer.RunRound();
+    while (!trainer->Done()) point = trainer->RunRound();
     EXPECT_EQ(point.stage, "drift and noise");
     EXPECT_EQ(point.epoch, options.steps);
-    return trainer.Network();
+    return trainer->Network();
   };
   const auto log_noise = [&](const ParticleNetwork& network) {
     const std::vector<ObservedMotion> people = {{motions[7].motion.middleCols(20, 12)}};
@@ -177,9 +181,9 @@ TEST(ParticleTrainerTest, FindsTheCorrelationsOfTheNoise) {
     }
     motions.push_back(walk);
   }
-  ParticleTrainer trainer(FourParticles(), motions, {}, QuickParticles());
-  while (!trainer.Done()) trainer.RunRound();
-  const Eigen::MatrixXf mix = trainer.Network().noise_mix;
+  const auto trainer = ParticleTrainer::Make(FourParticles(), motions, {}, QuickParticles());
+  while (!trainer->Done()) trainer->RunRound();
+  const Eigen::MatrixXf mix = trainer->Network().noise_mix;
   EXPECT_TRUE(mix.isLowerTriangular());
   const Eigen::MatrixXf correlations = mix * mix.transpose();
   for (int k = 0; k < 3; ++k) {
@@ -211,9 +215,9 @@ TEST(ParticleTrainerTest, BonesCanBeLearntToo) {
   options.mirrored = 0.0;
   const auto arm_error = [&](double weight) {
     options.bones = weight;
-    ParticleTrainer trainer(FourParticles(), motions, {}, options);
-    while (!trainer.Done()) trainer.RunRound();
-    const ParticleNetwork network = trainer.Network();
+    const auto trainer = ParticleTrainer::Make(FourParticles(), motions, {}, options);
+    while (!trainer->Done()) trainer->RunRound();
+    const ParticleNetwork network = trainer->Network();
     double error = 0.0;
     for (int start : {0, 10, 20, 30}) {
       const std::vector<ObservedMotion> people = {{motions[0].motion.middleCols(start, 12)}};
@@ -239,20 +243,22 @@ SimlpeTrainingOptions QuickSimlpe() {
 
 TEST(SimlpeTrainerTest, EigenForecastsWhatLibTorchDoesAndItLearns) {
   const SimlpeTrainingOptions options = QuickSimlpe();
-  SimlpeTrainer trainer(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
-  const TrainingPoint first = trainer.RunRound();
-  const std::string state = trainer.State();
+  const auto trainer =
+      SimlpeTrainer::Make(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
+  const TrainingPoint first = trainer->RunRound();
+  const std::string state = trainer->State();
   TrainingPoint last = first;
-  while (!trainer.Done()) last = trainer.RunRound();
+  while (!trainer->Done()) last = trainer->RunRound();
   EXPECT_LT(last.validation_loss, 0.7 * first.validation_loss);
   const Trajectories seen = SwayingMotion(12, 0.5f);
-  const Trajectories torch = trainer.Forecast(seen);
-  EXPECT_LT((trainer.Network().Forecast(seen, 12) - torch).cwiseAbs().maxCoeff(), 1e-5f);
+  const Trajectories torch = trainer->Forecast(seen);
+  EXPECT_LT((trainer->Network().Forecast(seen, 12) - torch).cwiseAbs().maxCoeff(), 1e-5f);
   EXPECT_GT((torch.colwise() - seen.col(11)).cwiseAbs().maxCoeff(), 0.01f);
-  SimlpeTrainer resumed(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
-  ASSERT_TRUE(resumed.Resume(state));
-  while (!resumed.Done()) resumed.RunRound();
-  EXPECT_EQ(resumed.Forecast(seen), torch) << "goes on to the last bit";
+  const auto resumed =
+      SimlpeTrainer::Make(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
+  ASSERT_TRUE(resumed->Resume(state));
+  while (!resumed->Done()) resumed->RunRound();
+  EXPECT_EQ(resumed->Forecast(seen), torch) << "goes on to the last bit";
 }
 
 }  // namespace

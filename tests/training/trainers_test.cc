@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "models/restoration/cvae_restoration.h"
-#include "models/restoration/cvae_trainer.h"
 #include "models/restoration/trainer.h"
 #include "tests/models/body_samples.h"
 
@@ -33,35 +32,35 @@ RegressionOptions QuickRegression() {
 }
 
 DenseNetwork TrainedInOneGo() {
-  RegressionTrainer trainer(Samples(1000, 1), Samples(200, 2), QuickRegression());
-  while (!trainer.Done()) trainer.RunRound();
-  return trainer.Best();
+  const auto trainer = MakeRegressionTrainer(Samples(1000, 1), Samples(200, 2), QuickRegression());
+  while (!trainer->Done()) trainer->RunRound();
+  return trainer->Network();
 }
 
 TEST(RegressionTrainerTest, LearnsAndReportsWhatItsWeightsDo) {
   const RegressionSamples held = Samples(200, 2);
-  RegressionTrainer trainer(Samples(1000, 1), held, QuickRegression());
-  const TrainingPoint first = trainer.RunRound();
+  const auto trainer = MakeRegressionTrainer(Samples(1000, 1), held, QuickRegression());
+  const TrainingPoint first = trainer->RunRound();
   double best = first.validation_loss;
-  while (!trainer.Done()) best = std::min(best, trainer.RunRound().validation_loss);
+  while (!trainer->Done()) best = std::min(best, trainer->RunRound().validation_loss);
   EXPECT_LT(best, 0.5 * first.validation_loss);
-  const double error = (trainer.Best().Evaluate(held.inputs) - held.targets).cwiseAbs().mean();
+  const double error = (trainer->Network().Evaluate(held.inputs) - held.targets).cwiseAbs().mean();
   EXPECT_NEAR(error, best, 1e-5);
 }
 
 TEST(RegressionTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
   const DenseNetwork one = TrainedInOneGo(), again = TrainedInOneGo();
-  RegressionTrainer broken(Samples(1000, 1), Samples(200, 2), QuickRegression());
-  for (int i = 0; i < 5; ++i) broken.RunRound();
-  const std::string state = broken.State();
-  RegressionTrainer resumed(Samples(1000, 1), Samples(200, 2), QuickRegression());
-  ASSERT_TRUE(resumed.Resume(state));
-  while (!resumed.Done()) resumed.RunRound();
+  const auto broken = MakeRegressionTrainer(Samples(1000, 1), Samples(200, 2), QuickRegression());
+  for (int i = 0; i < 5; ++i) broken->RunRound();
+  const std::string state = broken->State();
+  const auto resumed = MakeRegressionTrainer(Samples(1000, 1), Samples(200, 2), QuickRegression());
+  ASSERT_TRUE(resumed->Resume(state));
+  while (!resumed->Done()) resumed->RunRound();
   for (size_t i = 0; i < one.layers.size(); ++i) {
     EXPECT_EQ(one.layers[i].weights, again.layers[i].weights);
-    EXPECT_EQ(one.layers[i].weights, resumed.Best().layers[i].weights);
+    EXPECT_EQ(one.layers[i].weights, resumed->Network().layers[i].weights);
   }
-  EXPECT_FALSE(resumed.Resume("no state"));
+  EXPECT_FALSE(resumed->Resume("no state"));
 }
 
 TEST(RegressionTrainerTest, StopsEarlyWhereNothingGetsBetter) {
@@ -72,10 +71,16 @@ TEST(RegressionTrainerTest, StopsEarlyWhereNothingGetsBetter) {
   RegressionOptions options = QuickRegression();
   options.epochs = 400;
   options.patience = 5;
-  RegressionTrainer trainer(noise, held, options);
+  const auto trainer = MakeRegressionTrainer(noise, held, options);
   int epochs = 0;
-  while (!trainer.Done()) trainer.RunRound(), ++epochs;
+  while (!trainer->Done()) trainer->RunRound(), ++epochs;
   EXPECT_LT(epochs, 200);
+}
+
+TensorList TensorsOf(const CvaeWeights& weights) {
+  TensorList tensors;
+  AddTensors("", weights, &tensors);
+  return tensors;
 }
 
 std::vector<CvaeSequence> Sequences(int count, CvaeWeights* scalings,
@@ -85,11 +90,12 @@ std::vector<CvaeSequence> Sequences(int count, CvaeWeights* scalings,
     const RestorationInput person = MovingPerson(StandingPose(), 60.0 + 5 * i, 30);
     const BodyMotion motion = RigidRestoration().Restore({person})[0];
     BodyFrames frames = FramesOf(person, motion, layout);
-    sequences.push_back({frames.lower, frames.upper, PendulumFrames(person, layout)});
+    sequences.push_back({frames, PendulumFrames(person, layout)});
   }
   scalings->layout = layout;
-  scalings->lower = UnitScaling(layout.LowerFrame());
-  scalings->upper = UnitScaling(layout.UpperFrame());
+  for (int half = 0; half < layout.num_halves(); ++half) {
+    scalings->halves[half].scaling = UnitScaling(layout.Frame(half));
+  }
   scalings->pendulum = UnitScaling(layout.PendulumFrame());
   return sequences;
 }
@@ -105,39 +111,8 @@ CvaeOptions QuickCvae() {
 TEST(CvaeTrainerTest, ParametersAreLdps) {
   CvaeWeights scalings;
   const auto sequences = Sequences(2, &scalings);
-  const CvaeTrainer trainer(sequences, sequences, scalings, QuickCvae());
-  EXPECT_EQ(trainer.NumParameters(), (std::array<int64_t, 4>{865536, 136960, 1097904, 159232}));
-}
-
-// One sample of two latent variables. mu = (1, 2), mu_e = (0, 4): 1 + 4 = 5. Log-variances 0 and
-// 2 ln 3, so sigma = (1, 3), and sigma_e = (1, 1): 0 + 4. Eq. 7 is their sum, 9. Ours has means,
-// 5 / 2, and log-variances, (2 ln 3)^2 / 2 = 2.4139.
-TEST(CvaeTrainerTest, LossOfTheSamplerByHand) {
-  CvaeGaussian sampled{Eigen::MatrixXd(2, 1), Eigen::MatrixXd(2, 1)}, encoded = sampled;
-  sampled.mean << 1.0, 2.0, sampled.log_variance << 0.0, 2.0 * std::log(3.0);
-  encoded.mean << 0.0, 4.0, encoded.log_variance << 0.0, 0.0;
-  EXPECT_NEAR(CvaeSamplerLoss(CvaeTraining::kPublished, sampled, encoded), 9.0, 1e-12);
-  EXPECT_NEAR(CvaeSamplerLoss(CvaeTraining::kOwn, sampled, encoded), 2.5 + 2.4139, 1e-4);
-}
-
-// Errors 1 and 3: a mean square of 5. KL of N(1, 1) is 0.5, of N(0, 4) -0.5 (1 + ln 4 - 4) =
-// 0.80685: a mean of 0.653426, times 0.005.
-TEST(CvaeTrainerTest, LossOfTheAutoencoderByHand) {
-  CvaeGaussian encoded{Eigen::MatrixXd(2, 1), Eigen::MatrixXd(2, 1)};
-  encoded.mean << 1.0, 0.0, encoded.log_variance << 0.0, std::log(4.0);
-  const Eigen::MatrixXd output = Eigen::Vector2d(2.0, 1.0), frame = Eigen::Vector2d(1.0, 4.0);
-  EXPECT_NEAR(CvaeAutoencoderLoss({}, encoded, output, frame), 5.0 + 0.005 * 0.653426, 1e-8);
-}
-
-// Half of the way from 1e-4 to 1e-7 is 5.005e-5.
-TEST(CvaeTrainerTest, PublishedRatesByHand) {
-  CvaeOptions options;
-  options.training = CvaeTraining::kPublished;
-  for (const auto& [done, rate] :
-       {std::pair(0.0, 1e-4), std::pair(0.5, 5.005e-5), std::pair(1.0, 1e-7)}) {
-    EXPECT_NEAR(CvaeLearningRate(options, false, done), rate, 1e-15);
-    EXPECT_EQ(CvaeLearningRate(options, true, done), 1e-4);
-  }
+  const auto trainer = CvaeTrainer::Make(sequences, sequences, scalings, QuickCvae());
+  EXPECT_EQ(trainer->NumParameters(), (std::array<int64_t, 4>{865536, 136960, 1097904, 159232}));
 }
 
 TEST(CvaeTrainerTest, TheChainWithoutLibTorchIsTheTrainedOne) {
@@ -145,26 +120,26 @@ TEST(CvaeTrainerTest, TheChainWithoutLibTorchIsTheTrainedOne) {
   const auto sequences = Sequences(3, &scalings);
   CvaeOptions options = QuickCvae();
   options.steps[3] = 8;  // one round: its loss is that of the weights that are kept
-  CvaeTrainer trainer(sequences, sequences, scalings, options);
+  const auto trainer = CvaeTrainer::Make(sequences, sequences, scalings, options);
   TrainingPoint last;
-  while (!trainer.Done()) last = trainer.RunRound();
+  while (!trainer->Done()) last = trainer->RunRound();
   EXPECT_EQ(last.stage, "upper sampler");
-  const CvaeWeights weights = trainer.Best();
+  const CvaeWeights weights = trainer->Network();
   double error = 0.0;
   for (const CvaeSequence& s : sequences) {
-    Eigen::MatrixXf lower = s.lower.col(0), upper = s.upper.col(0);
+    Eigen::MatrixXf lower = s.body[0].col(0), upper = s.body[1].col(0);
     Eigen::MatrixXf clamped;
     double of_sequence = 0.0;
-    for (Eigen::Index t = 1; t < s.lower.cols(); ++t) {
-      StepLower(weights, s.pendulum.col(t), {}, &lower);
+    for (Eigen::Index t = 1; t < s.body[0].cols(); ++t) {
+      Step(weights, kLowerHalf, s.pendulum.col(t), {}, {}, &lower);
       lower = lower.cwiseMax(-kLargestScaled).cwiseMin(kLargestScaled);
-      StepUpper(weights, s.pendulum.col(t), {}, lower, &upper);
+      Step(weights, kUpperHalf, s.pendulum.col(t), {}, lower, &upper);
       upper = upper.cwiseMax(-kLargestScaled).cwiseMin(kLargestScaled);
       for (int j = 0; j < 14; ++j) {
-        of_sequence += (upper - s.upper.col(t)).block<3, 1>(3 + 3 * j, 0).norm() / 14;
+        of_sequence += (upper - s.body[1].col(t)).block<3, 1>(3 + 3 * j, 0).norm() / 14;
       }
     }
-    error += of_sequence / static_cast<double>(s.lower.cols() - 1) / 3.0;
+    error += of_sequence / static_cast<double>(s.body[0].cols() - 1) / 3.0;
   }
   EXPECT_NEAR(error, last.validation_loss, 1e-4 * std::max(1.0, error));
 }
@@ -174,20 +149,20 @@ TEST(CvaeTrainerTest, ThePublishedTrainingKeepsSigmaAndResumes) {
   CvaeWeights scalings;
   const auto sequences = Sequences(2, &scalings);
   CvaeOptions options = QuickCvae();
-  CvaeTrainer own(sequences, sequences, scalings, options);
-  while (!own.Done()) own.RunRound();
+  const auto own = CvaeTrainer::Make(sequences, sequences, scalings, options);
+  while (!own->Done()) own->RunRound();
   options.training = CvaeTraining::kPublished;
-  CvaeTrainer published(sequences, sequences, scalings, options);
+  const auto published = CvaeTrainer::Make(sequences, sequences, scalings, options);
   std::string state;
-  for (int round = 0; !published.Done(); ++round) {
-    published.RunRound();
-    if (round == 3) state = published.State();  // in the lower sampler
+  for (int round = 0; !published->Done(); ++round) {
+    published->RunRound();
+    if (round == 3) state = published->State();  // in the lower sampler
   }
-  CvaeTrainer resumed(sequences, sequences, scalings, options);
-  ASSERT_TRUE(resumed.Resume(state));
-  while (!resumed.Done()) resumed.RunRound();
-  const auto sigma_of = [](const CvaeTrainer& trainer) {
-    return trainer.Best().lower_sampler.log_variance.weights;
+  const auto resumed = CvaeTrainer::Make(sequences, sequences, scalings, options);
+  ASSERT_TRUE(resumed->Resume(state));
+  while (!resumed->Done()) resumed->RunRound();
+  const auto sigma_of = [](const std::unique_ptr<CvaeTrainer>& trainer) {
+    return trainer->Network().halves[kLowerHalf].sampler.log_variance.weights;
   };
   EXPECT_EQ(sigma_of(published).rows(), kLatent);
   EXPECT_EQ(sigma_of(published), sigma_of(resumed));
@@ -197,16 +172,16 @@ TEST(CvaeTrainerTest, ThePublishedTrainingKeepsSigmaAndResumes) {
 TEST(CvaeTrainerTest, ResumesToTheLastBitInTheMiddleOfAnyStage) {
   CvaeWeights scalings;
   const auto sequences = Sequences(2, &scalings);
-  CvaeTrainer whole(sequences, sequences, scalings, QuickCvae());
-  while (!whole.Done()) whole.RunRound();
+  const auto whole = CvaeTrainer::Make(sequences, sequences, scalings, QuickCvae());
+  while (!whole->Done()) whole->RunRound();
   for (int rounds : {2, 4, 6, 9}) {  // 3, 2, 3 and 2 rounds a stage
-    CvaeTrainer broken(sequences, sequences, scalings, QuickCvae());
-    for (int i = 0; i < rounds; ++i) broken.RunRound();
-    const std::string state = broken.State();
-    CvaeTrainer resumed(sequences, sequences, scalings, QuickCvae());
-    ASSERT_TRUE(resumed.Resume(state)) << rounds;
-    while (!resumed.Done()) resumed.RunRound();
-    const TensorList a = ToTensors(whole.Best()), b = ToTensors(resumed.Best());
+    const auto broken = CvaeTrainer::Make(sequences, sequences, scalings, QuickCvae());
+    for (int i = 0; i < rounds; ++i) broken->RunRound();
+    const std::string state = broken->State();
+    const auto resumed = CvaeTrainer::Make(sequences, sequences, scalings, QuickCvae());
+    ASSERT_TRUE(resumed->Resume(state)) << rounds;
+    while (!resumed->Done()) resumed->RunRound();
+    const TensorList a = TensorsOf(whole->Network()), b = TensorsOf(resumed->Network());
     for (size_t i = 0; i < a.size(); ++i)
       EXPECT_EQ(a[i].values, b[i].values) << rounds << a[i].name;
   }
@@ -228,24 +203,24 @@ TEST(CvaeTrainerTest, LayoutsOfTheAblationAreTrained) {
   for (const Case& c : cases) {
     CvaeWeights scalings;
     const auto sequences = Sequences(2, &scalings, c.layout);
-    CvaeTrainer trainer(sequences, sequences, scalings, QuickCvae());
-    for (int i = 0; i < 4; ++i) EXPECT_EQ(trainer.NumParameters()[i] > 0, c.stages[i]) << i;
+    const auto trainer = CvaeTrainer::Make(sequences, sequences, scalings, QuickCvae());
+    for (int i = 0; i < 4; ++i) EXPECT_EQ(trainer->NumParameters()[i] > 0, c.stages[i]) << i;
     std::string state;
     TrainingPoint last;
-    while (!trainer.Done()) {
-      last = trainer.RunRound();
-      if (state.empty()) state = trainer.State();
+    while (!trainer->Done()) {
+      last = trainer->RunRound();
+      if (state.empty()) state = trainer->State();
     }
     EXPECT_EQ(last.stage, c.last);
-    CvaeTrainer resumed(sequences, sequences, scalings, QuickCvae());
-    ASSERT_TRUE(resumed.Resume(state)) << c.last;
-    while (!resumed.Done()) resumed.RunRound();
-    const TensorList trained = ToTensors(trainer.Best()), again = ToTensors(resumed.Best());
+    const auto resumed = CvaeTrainer::Make(sequences, sequences, scalings, QuickCvae());
+    ASSERT_TRUE(resumed->Resume(state)) << c.last;
+    while (!resumed->Done()) resumed->RunRound();
+    const TensorList trained = TensorsOf(trainer->Network()), again = TensorsOf(resumed->Network());
     for (size_t i = 0; i < trained.size(); ++i) EXPECT_EQ(trained[i].values, again[i].values);
-    TensorReader reader(trained);
-    const CvaeWeights taken = TakeCvae(c.layout, &reader);
+    TensorFields reader(trained);
+    const CvaeWeights taken = TakeTensors("", CvaeWeights{c.layout, {}, {}}, &reader);
     EXPECT_EQ(reader.problem(), "");
-    EXPECT_EQ(ToTensors(taken).size(), trained.size());
+    EXPECT_EQ(TensorsOf(taken).size(), trained.size());
   }
 }
 

@@ -10,22 +10,16 @@ namespace pushid {
 namespace {
 
 // Counts to three.
-class CountingTrainer : public Trainer {
- public:
-  CountingTrainer() : Trainer(std::make_unique<Counting>()) {}
-
- private:
-  struct Counting : Run {
-    bool Done() const override { return rounds == 3; }
-    TrainingPoint RunRound() override { return {++rounds, 1.0 / rounds, 1.0 / rounds}; }
-    double ShareDone() const override { return rounds / 3.0; }
-    std::string State() override { return std::to_string(rounds); }
-    bool Resume(const std::string& state) override {
-      rounds = std::stoi(state);
-      return true;
-    }
-    int rounds = 0;
-  };
+struct CountingTrainer : Trainer {
+  bool Done() const override { return rounds == 3; }
+  TrainingPoint RunRound() override { return {++rounds, 1.0 / rounds, 1.0 / rounds}; }
+  double ShareDone() const override { return rounds / 3.0; }
+  std::string State() override { return std::to_string(rounds); }
+  bool Resume(const std::string& state) override {
+    rounds = std::stoi(state);
+    return true;
+  }
+  int rounds = 0;
 };
 
 class TrainingRunTest : public TempDirTest {

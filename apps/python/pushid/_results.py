@@ -54,11 +54,11 @@ class Table(list):
                                         if row.get("status") != "fixed" or name not in held}) for row in self])
 
 
-class Scores(dict):
-    """Scores as pushid-evaluate writes them; print() shows its table, without the single recordings."""
+class _Printed:
+    """A container of what a program writes as JSON; print() shows the program's text."""
 
     def __init__(self, found, text=""):
-        super().__init__(found)
+        super().__init__(_numbers(json.loads(found)))
         self.text = text
 
     def __str__(self):
@@ -67,14 +67,12 @@ class Scores(dict):
     __repr__ = __str__
 
 
-class CrossValidation(list):
+class Scores(_Printed, dict):
+    """Scores as pushid-evaluate writes them; print() shows its table, without the single recordings."""
+
+
+class CrossValidation(_Printed, list):
     """The scores of each predictor, as pushid-crossvalidate writes them; print() shows its table."""
-
-    def __init__(self, found, text=""):
-        super().__init__(found)
-        self.text = text
-
-    __str__ = __repr__ = Scores.__str__
 
 
 class Result:
@@ -320,7 +318,7 @@ def crossvalidate(recordings, candidates=None, *, scheme="stratified", folds=4, 
                                                   forecast, baselines, num_threads, progress))
 
 
-class Design(dict):
+class Design(_Printed, dict):
     """Benefit of one more recording; print() shows it as pushid-check does.
 
     "pushes": a Table, best first: direction_deg (from forwards to the left), acceleration (peak force over mass, m/s^2),
@@ -330,7 +328,4 @@ class Design(dict):
 
     def __init__(self, found):
         super().__init__(found)
-        self["pushes"] = Table(self["pushes"])
-
-    def __str__(self):
-        return self["text"]
+        self["pushes"], self.text = Table(self["pushes"]), self["text"]

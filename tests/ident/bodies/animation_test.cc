@@ -27,7 +27,7 @@ Animation AnimatedPair() {
   AddRecorded(recording, {BodyMotion(5, StandingPose())}, &animation);
   AnimatedPerson predicted;
   predicted.name = "x";
-  predicted.body = BodyMotion(5, StandingPose());
+  predicted.SetBody(BodyMotion(5, StandingPose()));
   predicted.cart.assign(5, {0.0, 0.0, 0.09});
   predicted.tip.assign(5, {0.0, 0.0, 1.0});
   predicted.force.assign(5, {120.0, 0.0, 3.0, 0.0});
@@ -70,7 +70,7 @@ TEST(AnimationTest, FewerSamplesAndSeveralRecordings) {
 // A file's own skeleton where it is no whole body: its bones, and no head to draw.
 TEST(AnimationTest, AnotherSkeletonKeepsItsBones) {
   Animation animation = AnimatedPair();
-  animation.people[0].body.clear();
+  animation.people[0].head = -1;
   animation.people[0].parents = {-1, 0};
   animation.people[0].joints.assign(5, Eigen::Matrix3Xd::Ones(3, 2));
   EXPECT_TRUE(Contains(AnimationHtml({animation}), "\"parents\":[-1,0]"));

@@ -80,7 +80,7 @@ TEST_F(BodySkeletonTest, WhoIsCarriedIsCarriedWithAllTheirJoints) {
     BodyMotion motion(4, recording.bodies[0][0]);
     motion[3].colwise() += move;
     const BodySkeleton& skeleton = recording.skeletons[0];
-    const PosedJoints still = Retarget(skeleton, motion[0]), moved = Retarget(skeleton, motion[3]);
+    const FittedTree still = Retarget(skeleton, motion[0]), moved = Retarget(skeleton, motion[3]);
     ASSERT_EQ(skeleton.num_joints(), static_cast<int>(joints.size()));
     for (int j = 0; j < skeleton.num_joints(); ++j) {
       EXPECT_LT((still.positions.col(j) - recorded_.joints[0][j]).norm(), 1e-9) << joints[j].name;
@@ -127,7 +127,7 @@ TEST_F(BodySkeletonTest, JointsWithoutARoleFollowTheirParent) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(-0.8, Eigen::Vector3d::UnitY()).toRotationMatrix();
   pose.col(kLeftWrist) =
       pose.col(kLeftWrist - 1) + turn * (pose.col(kLeftWrist) - pose.col(kLeftWrist - 1));
-  const PosedJoints posed = Retarget(skeleton, pose);
+  const FittedTree posed = Retarget(skeleton, pose);
   const int elbow = index("LeftForeArm"), hand = index("LeftHand"), thumb = index("LThumb");
   const auto rest = [&](int j) { return Eigen::Vector3d(skeleton.rest.col(j)); };
   EXPECT_LT((posed.positions.col(hand) - pose.col(kLeftWrist)).norm(), 1e-12);
@@ -179,7 +179,7 @@ TEST_F(BodySkeletonTest, AHipBetweenTwoJoints) {
   const BodyRecording recording = Recorded(PlainSkeleton());
   const BodySkeleton& skeleton = recording.skeletons[0];
   const Eigen::Vector3d move(0.3, -0.1, 0.02);
-  const PosedJoints moved = Retarget(skeleton, recording.bodies[0][0].colwise() + move);
+  const FittedTree moved = Retarget(skeleton, recording.bodies[0][0].colwise() + move);
   for (int j = 0; j < skeleton.num_joints(); ++j) {
     EXPECT_LT((moved.positions.col(j) - recorded_.joints[0][j] - move).norm(), 1e-9);
   }

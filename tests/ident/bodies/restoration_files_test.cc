@@ -16,12 +16,11 @@ namespace {
 class RestorationFilesTest : public TempDirTest {
  protected:
   std::string WriteWindow() {
-    RestorationFile file;
-    file.kind = RestorationKind::kWindow;
+    TensorFolder content;
+    content.kind = "window";
     const WindowWeights weights = RandomWindow();
-    AddTensors("inputs", weights.inputs, &file.tensors);
-    AddTensors("network", weights.network, &file.tensors);
-    EXPECT_EQ(ProblemOf(WriteRestorationFile(Path("r"), file)), "no error");
+    AddTensors("", weights, &content.tensors);
+    EXPECT_EQ(ProblemOf(WriteTensorFolder(kRestorationFolder, Path("r"), content)), "no error");
     return Path("r");
   }
   std::string ErrorOf(const std::string& folder) { return ProblemOf(LoadRestoration(folder)); }
@@ -43,11 +42,11 @@ TEST_F(RestorationFilesTest, AWindowComesBackToTheLastBit) {
 }
 
 TEST_F(RestorationFilesTest, ACvaeComesBackToTheLastBit) {
-  RestorationFile file;
-  file.kind = RestorationKind::kCvae;
-  (*file.settings)["coordinates"] = "ldp";
-  file.tensors = ToTensors(RandomCvae());
-  ASSERT_FALSE(WriteRestorationFile(Path("c"), file));
+  TensorFolder content;
+  content.kind = "cvae";
+  (*content.settings)["coordinates"] = "ldp";
+  AddTensors("", RandomCvae(), &content.tensors);
+  ASSERT_FALSE(WriteTensorFolder(kRestorationFolder, Path("c"), content));
   const auto loaded = Unwrapped(LoadRestoration(Path("c")));
   const RestorationInput person = MovingPerson(StandingPose(), 80, 20);
   const BodyMotion before =
@@ -58,10 +57,10 @@ TEST_F(RestorationFilesTest, ACvaeComesBackToTheLastBit) {
 
 TEST_F(RestorationFilesTest, TheLatentVariableIsDrawn) {
   const RestorationInput person = MovingPerson(StandingPose(), 80, 20);
-  RestorationFile file;
-  file.kind = RestorationKind::kCvae;
-  file.tensors = ToTensors(RandomCvae());
-  ASSERT_FALSE(WriteRestorationFile(Path("c"), file));
+  TensorFolder content;
+  content.kind = "cvae";
+  AddTensors("", RandomCvae(), &content.tensors);
+  ASSERT_FALSE(WriteTensorFolder(kRestorationFolder, Path("c"), content));
   const auto cvae = Unwrapped(LoadRestoration(Path("c")));
   const Pose mean = cvae->Restore({person})[0][19];
   ASSERT_FALSE(ChooseLatent({CvaeLatent::kDraw, 7}, cvae.get()));
@@ -82,19 +81,19 @@ TEST_F(RestorationFilesTest, ViewsAndLayoutsComeBack) {
       MovingPerson(Placed(StandingPose(), 0.0, {0.6, 0.0, 0.0}), 70, 20)};
   for (const RestorationView view : {RestorationView::kNeighbours, RestorationView::kPose}) {
     const WindowWeights weights = RandomWindow(1, view);
-    RestorationFile file;
-    (*file.settings)["sees"] = NameOf(view);
-    AddTensors("inputs", weights.inputs, &file.tensors);
-    AddTensors("network", weights.network, &file.tensors);
-    ASSERT_FALSE(WriteRestorationFile(Path("v"), file));
+    TensorFolder content;
+    content.kind = "window";
+    (*content.settings)["sees"] = NameOf(view);
+    AddTensors("", weights, &content.tensors);
+    ASSERT_FALSE(WriteTensorFolder(kRestorationFolder, Path("v"), content));
     const auto loaded = Unwrapped(LoadRestoration(Path("v")));
     EXPECT_EQ(loaded->Restore(people)[1][19], WindowRestoration(weights).Restore(people)[1][19]);
   }
-  RestorationFile file;
-  file.kind = RestorationKind::kCvae;
-  *file.settings = {{"sees", "pose"}, {"coordinates", "tip"}, {"halves", false}};
-  file.tensors = ToTensors(RandomCvae(1, {CvaeCoordinates::kTip, false, false}));
-  ASSERT_FALSE(WriteRestorationFile(Path("c"), file));
+  TensorFolder content;
+  content.kind = "cvae";
+  *content.settings = {{"sees", "pose"}, {"coordinates", "tip"}, {"halves", false}};
+  AddTensors("", RandomCvae(1, {CvaeCoordinates::kTip, false, false}), &content.tensors);
+  ASSERT_FALSE(WriteTensorFolder(kRestorationFolder, Path("c"), content));
   const auto loaded = Unwrapped(LoadRestoration(Path("c")));
   EXPECT_EQ(loaded->Restore(people)[1][19], loaded->Restore(people)[1][19]) << "draws repeat";
   WriteWindow();
@@ -142,13 +141,12 @@ TEST_F(RestorationFilesTest, DamagedOrExchangedWeightsAreRefused) {
 }
 
 TEST_F(RestorationFilesTest, NumbersThatAreNoneAreRefused) {
-  RestorationFile file;
-  file.kind = RestorationKind::kWindow;
+  TensorFolder content;
+  content.kind = "window";
   WindowWeights weights = RandomWindow();
   weights.network.layers[1].weights(3, 4) = std::numeric_limits<float>::quiet_NaN();
-  AddTensors("inputs", weights.inputs, &file.tensors);
-  AddTensors("network", weights.network, &file.tensors);
-  ASSERT_FALSE(WriteRestorationFile(Path("r"), file));
+  AddTensors("", weights, &content.tensors);
+  ASSERT_FALSE(WriteTensorFolder(kRestorationFolder, Path("r"), content));
   EXPECT_TRUE(Contains(ErrorOf(Path("r")), "network.1.weights has entries that are not numbers"));
 }
 

@@ -75,7 +75,7 @@ TEST_F(GeneratorFilesTest, MistakesAreNamed) {
                        "--model names the folder that "
                        "pushid-train-generator --out wrote"));
   EXPECT_TRUE(Contains(ErrorAfter("\"kind\": \"particles\"", "\"kind\": \"waves\""),
-                       "kind is 'waves'; it must be particles, diffusion"));
+                       "kind is 'waves'; it must be particles or diffusion"));
   EXPECT_TRUE(Contains(ErrorAfter("\"format\": 1", "\"format\": 2"), "format 2"));
   EXPECT_TRUE(Contains(ErrorAfter("\"poses\": true", "\"poses\": false"), "member0.input"));
   EXPECT_TRUE(Contains(ErrorAfter("\"members\": 2", "\"members\": 3"), "member2"));

@@ -33,14 +33,14 @@ BodyRecording OnePushed(int frames) {
 
 TEST(PushParticlesTest, PlacesCountFromTheHipAndPushesFromTheirFrame) {
   const BodyRecording recording = OnePushed(6);
-  const PushedParticles person = ParticlesOf(recording, 0);
-  EXPECT_LT(person.motion.frames.col(0).head<2>().norm(), 1e-6f);
-  EXPECT_FLOAT_EQ(person.motion.frames(2, 0), 1.0f);  // the hip's height stays
-  EXPECT_EQ(person.motion.controls.col(0), Eigen::Vector4f::Zero());
-  EXPECT_EQ(person.motion.controls.col(1), Eigen::Vector4f(2.0f, 0.1f, 0.5f, -0.05f));
-  EXPECT_EQ(person.motion.controls.col(2), Eigen::Vector4f(1, 0, 0, 0));
-  EXPECT_TRUE(ParticlesOf(recording, 1).motion.controls.isZero());
-  const BodyMotion back = BodyFromParticles(person.motion.frames, person.origin);
+  const ObservedMotion person = ParticlesOf(recording, 0);
+  EXPECT_LT(person.frames.col(0).head<2>().norm(), 1e-6f);
+  EXPECT_FLOAT_EQ(person.frames(2, 0), 1.0f);  // the hip's height stays
+  EXPECT_EQ(person.controls.col(0), Eigen::Vector4f::Zero());
+  EXPECT_EQ(person.controls.col(1), Eigen::Vector4f(2.0f, 0.1f, 0.5f, -0.05f));
+  EXPECT_EQ(person.controls.col(2), Eigen::Vector4f(1, 0, 0, 0));
+  EXPECT_TRUE(ParticlesOf(recording, 1).controls.isZero());
+  const BodyMotion back = BodyFromParticles(person.frames, person.place);
   for (int t = 0; t < 6; ++t) {
     EXPECT_LT((back[t] - recording.bodies[0][t]).cwiseAbs().maxCoeff(), 1e-6);
   }
@@ -48,10 +48,10 @@ TEST(PushParticlesTest, PlacesCountFromTheHipAndPushesFromTheirFrame) {
 
 TEST(PushParticlesTest, TheMirrorIsThatOfBodies) {
   const BodyRecording recording = OnePushed(3);
-  const PushedParticles person = ParticlesOf(recording, 0);
-  const Trajectories mirrored = Mirrored(person.motion.frames, PushLayout(recording.joint_names));
-  const Pose pose = BodyFromParticles(person.motion.frames, Eigen::Vector3d::Zero())[0];
-  EXPECT_LT((BodyFromParticles(mirrored, Eigen::Vector3d::Zero())[0] - Mirrored(pose)).norm(),
+  const ObservedMotion person = ParticlesOf(recording, 0);
+  const Trajectories mirrored = Mirrored(person.frames, PushLayout(recording.joint_names));
+  const Pose pose = BodyFromParticles(person.frames, Eigen::Vector2f::Zero())[0];
+  EXPECT_LT((BodyFromParticles(mirrored, Eigen::Vector2f::Zero())[0] - Mirrored(pose)).norm(),
             1e-6);
 }
 

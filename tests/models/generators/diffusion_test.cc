@@ -25,7 +25,7 @@ TEST(DiffusionScheduleTest, Equation5ByHand) {
 
 TEST(DiffusionFeaturesTest, MotionsComeBack) {
   const std::vector<ObservedMotion> group = PushedGroup(3, 40);
-  const JointScales scales = JointScalesOf({group});
+  const JointScales scales = MotionScalesOf({group}, MotionFrame::kGroup).joints;
   EXPECT_GE(scales.minCoeff(), 0.02f);
   EXPECT_GE(scales[kBodyHip], 0.05f);
   for (const ObservedMotion& person : group) {
@@ -41,7 +41,7 @@ TEST(DiffusionFeaturesTest, MotionsComeBack) {
 TEST(DiffusionFeaturesTest, OwnFramesKnowNoTurn) {
   const std::vector<ObservedMotion> group = PushedGroup(3, 40);
   const std::vector<ObservedMotion> turned = Changed(group, {false, 0.7, 1.0});
-  MotionScales plain = OwnFrameScalesOf({group});
+  MotionScales plain = MotionScalesOf({group}, MotionFrame::kOwn);
   const MotionScales scales = plain;
   plain.mean.setZero();
   plain.spread.setOnes();

@@ -85,7 +85,7 @@ TEST(SkeletonFitTest, APoseOfTheSkeletonItselfComesBackExactly) {
   const Eigen::Matrix3d lean =
       Eigen::AngleAxisd(0.3, Eigen::Vector3d(0.2, 1, 0.1).normalized()).toRotationMatrix();
   const Pose wanted = (lean * rest).colwise() + Eigen::Vector3d(0.5, 0.1, 0.02);
-  const PosedSkeleton posed = FitSkeleton(rest, wanted);
+  const FittedTree posed = FitSkeleton(rest, wanted);
   EXPECT_LT((posed.positions - wanted).norm(), 1e-12);
   EXPECT_LT((posed.rotations[0] - lean).norm(), 1e-12);
 }
@@ -96,7 +96,7 @@ TEST(SkeletonFitTest, BonesKeepTheirLengthWhateverIsWanted) {
   for (int i = 0; i < 20; ++i) {
     Pose wanted = rest;
     for (int k = 0; k < wanted.size(); ++k) wanted.data()[k] += 0.1 * random.Normal();
-    const PosedSkeleton posed = FitSkeleton(rest, wanted);
+    const FittedTree posed = FitSkeleton(rest, wanted);
     EXPECT_LT((BoneLengths(posed.positions) - BoneLengths(rest)).cwiseAbs().maxCoeff(), 1e-12);
     EXPECT_EQ(posed.positions.col(0), wanted.col(0));
     // What is carried out already stays as it is.

@@ -164,12 +164,12 @@ TEST(WindowFeaturesTest, ThePoseViewSeesThePushAndNoPendulum) {
 
 TEST(CvaeFeaturesTest, SizesAreLdps) {
   const CvaeLayout layout;
-  EXPECT_EQ(layout.LowerFrame(), 111);
-  EXPECT_EQ(layout.UpperFrame(), 171);
-  EXPECT_EQ(layout.UpperCondition(), 198);
+  EXPECT_EQ(layout.Frame(kLowerHalf), 111);
+  EXPECT_EQ(layout.Frame(kUpperHalf), 171);
+  EXPECT_EQ(layout.Condition(kUpperHalf), 198);
   const CvaeLayout whole = {CvaeCoordinates::kTip, true, false};
-  EXPECT_EQ(whole.LowerFrame(), 267);
-  EXPECT_EQ(whole.UpperFrame(), 0);
+  EXPECT_EQ(whole.Frame(kLowerHalf), 267);
+  EXPECT_EQ(whole.num_halves(), 1);
 }
 
 TEST(CvaeFeaturesTest, PendulumByHand) {
@@ -192,21 +192,21 @@ TEST(CvaeFeaturesTest, AFrameByHand) {
                        Placed(person.first_pose, 0.0, {0.01, 0.02, 0.0})};
   motion[1].col(kRightToe) += Eigen::Vector3d(0.0, 0.0, 0.05);
   const BodyFrames ldp = FramesOf(person, motion, {CvaeCoordinates::kLdp});
-  EXPECT_LT(ldp.lower.col(0).head<3>().norm(), 1e-6);
-  EXPECT_NEAR(ldp.lower(0, 2), 0.01, 1e-6);  // way of the hip
-  EXPECT_NEAR(ldp.upper(1, 2), 0.02, 1e-6);
+  EXPECT_LT(ldp[kLowerHalf].col(0).head<3>().norm(), 1e-6);
+  EXPECT_NEAR(ldp[kLowerHalf](0, 2), 0.01, 1e-6);  // way of the hip
+  EXPECT_NEAR(ldp[kUpperHalf](1, 2), 0.02, 1e-6);
   const Eigen::Vector3d toe = person.first_pose.col(kRightToe) - person.first_pose.col(0);
-  EXPECT_NEAR(ldp.lower(3 + 3 * 4 + 2, 1), toe.z() + 0.05, 1e-6);    // position
-  EXPECT_NEAR(ldp.lower(3 + 27 + 3 * 4 + 2, 1), 0.05 * 60.0, 1e-4);  // change, m/s
-  EXPECT_NEAR(ldp.lower(3 + 3 * 0, 2), 0.01, 1e-6);                  // the hip has gone
+  EXPECT_NEAR(ldp[kLowerHalf](3 + 3 * 4 + 2, 1), toe.z() + 0.05, 1e-6);    // position
+  EXPECT_NEAR(ldp[kLowerHalf](3 + 27 + 3 * 4 + 2, 1), 0.05 * 60.0, 1e-4);  // change, m/s
+  EXPECT_NEAR(ldp[kLowerHalf](3 + 3 * 0, 2), 0.01, 1e-6);                  // the hip has gone
   // Rotations at frame 0 are the identity's first two columns.
   for (int j = 0; j < 9; ++j) {
-    EXPECT_NEAR(ldp.lower(3 + 54 + 6 * j, 0), 1.0, 1e-6);
-    EXPECT_NEAR(ldp.lower(3 + 54 + 6 * j + 4, 0), 1.0, 1e-6);
+    EXPECT_NEAR(ldp[kLowerHalf](3 + 54 + 6 * j, 0), 1.0, 1e-6);
+    EXPECT_NEAR(ldp[kLowerHalf](3 + 54 + 6 * j + 4, 0), 1.0, 1e-6);
   }
   const BodyFrames tip = FramesOf(person, motion, {CvaeCoordinates::kTip});
-  EXPECT_NEAR(tip.lower(3, 2), 0.0, 1e-6);
-  EXPECT_NEAR(tip.lower(0, 2), 0.01, 1e-6);
+  EXPECT_NEAR(tip[kLowerHalf](3, 2), 0.0, 1e-6);
+  EXPECT_NEAR(tip[kLowerHalf](0, 2), 0.01, 1e-6);
 }
 
 TEST(CvaeFeaturesTest, FramesComeBackAsTheMotion) {
@@ -252,8 +252,8 @@ TEST(DenseNetworkTest, ScalingThereAndBackAndWithinItsLimit) {
 
 TEST(CvaeNetworksTest, BlendedOutputsAreTheBlendedWeights) {
   const CvaeWeights weights = RandomCvae(4);
-  const int lower = weights.layout.LowerFrame();
-  const CvaeDecoder& d = weights.lower_decoder;
+  const int lower = weights.layout.Frame(kLowerHalf);
+  const CvaeDecoder& d = weights.halves[kLowerHalf].decoder;
   Random random(9);
   const Eigen::MatrixXf z = RandomMatrix(kLatent, 1, 1.0, &random);
   const Eigen::MatrixXf c = RandomMatrix(lower, 1, 1.0, &random);

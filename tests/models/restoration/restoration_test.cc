@@ -127,11 +127,11 @@ TEST(RestorationTest, TheHipGoesWithTheTip) {
 
 // z = mu + sigma eps: here sigma is 2 for every input.
 TEST(CvaeLatentTest, ADrawIsTheMeanAndSigmaTimesTheDraw) {
-  CvaeSampler sampler = RandomCvae().lower_sampler;
+  CvaeSampler sampler = RandomCvae().halves[kLowerHalf].sampler;
   sampler.log_variance.weights.setZero();
   sampler.log_variance.bias.setConstant(std::log(4.0f));
   Random random(3);
-  const Eigen::MatrixXf condition = RandomMatrix(CvaeLayout().LowerFrame(), 2, 1.0, &random);
+  const Eigen::MatrixXf condition = RandomMatrix(CvaeLayout().Frame(kLowerHalf), 2, 1.0, &random);
   const Eigen::MatrixXf pendulum = RandomMatrix(kPendulumFrame, 2, 1.0, &random);
   const Eigen::MatrixXf eps = RandomMatrix(kLatent, 2, 1.0, &random);
   const Eigen::MatrixXf mean = sampler.Evaluate(condition, pendulum, {});
@@ -166,7 +166,8 @@ TEST(CvaeLatentTest, DrawsRepeatByTheirSourceAndVanishWithSigma) {
   const BodyMotion once = drawn.Restore({person})[0];
   EXPECT_EQ(Largest(once, drawn.Restore({person})[0]), 0.0);
   EXPECT_GT(Largest(once, mean), 1e-3);
-  for (CvaeSampler* sampler : {&weights.lower_sampler, &weights.upper_sampler}) {
+  for (CvaeSampler* sampler :
+       {&weights.halves[kLowerHalf].sampler, &weights.halves[kUpperHalf].sampler}) {
     sampler->log_variance.weights.setZero();
     sampler->log_variance.bias.setConstant(-60.0f);
   }
@@ -206,8 +207,8 @@ TEST(RestorationTest, NetworksSeeTheLengthOfTheFrame) {
   EXPECT_NEAR(PendulumFrames(person, {})(7, 10), now, 1e-6);
   EXPECT_NEAR(PendulumFrames(person, {})(6, 10),
               TipAt(person, 10).z() - person.first_pose(2, kBodyHip), 1e-6);
-  EXPECT_NEAR(WindowInputs({person}, 0, RestorationView::kPendulum)(kWindowRodInput, 10), now,
-              1e-6);
+  EXPECT_NEAR(WindowInputs({person}, 0, RestorationView::kPendulum)(kWindowPendulumInputs + 2, 10),
+              now, 1e-6);
 }
 
 TEST(RestorationTest, OtherFrameRatesAreTheSameMotion) {

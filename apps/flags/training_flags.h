@@ -1,0 +1,112 @@
+// apps: flags of the programs that train networks of bodies, and what they do alike.
+#pragma once
+
+#include <gflags/gflags.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/flags/command_line.h"
+#include "apps/support/app_support.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/json_file.h"
+#include "ident/training/restoration_training.h"
+#include "ident/validation/scores_json.h"
+
+DEFINE_string(out, "", "folder to write: the network (JSON), weights.npy, curve.svg");
+DEFINE_int32(crossvalidate, 0,
+             "number of folds: instead of writing a network, train (and refit the pendulum) in "
+             "every fold and score the held-out recordings; 0: off");
+DEFINE_string(scheme, pushid::NameOf(pushid::FoldScheme::kStratified),
+              "--crossvalidate: stratified (folds by setting, strength and subject) or interleaved "
+              "(recordings of a setting assigned to folds in turn)");
+DEFINE_string(json_out, "", "--crossvalidate: write the scores here (JSON)");
+DEFINE_uint64(seed, pushid::TrainerOptions{}.seed,
+              "seed of weights, batches, noise and folds; with --seeds the first");
+DEFINE_int32(num_threads, pushid::TrainerOptions{}.num_threads,
+             "threads of the training; only a single thread is bit-reproducible");
+
+namespace pushid {
+
+// "kind of restoration: window (fast, default), cvae (LDP's chain)"
+template <typename Rows, typename Keep>
+std::string KindHelp(const std::string& noun, const Rows& rows, Keep keep) {
+  std::string kinds;
+  for (const auto& row : rows) {
+    if (!keep(row)) continue;
+    kinds += (kinds.empty() ? "" : ", ") + std::string(row.name) + " (" + row.what + ")";
+  }
+  return "kind of " + noun + ": " + kinds;
+}
+
+// The folds that the flags ask for; throws where they do not go together.
+inline FoldChoice FoldsFromCommandLine() {
+  FoldChoice choice = {FoldScheme::kStratified, FLAGS_crossvalidate, FLAGS_seed};
+  OrFail(ParseName("--scheme", FLAGS_scheme, &choice.scheme));
+  if (FLAGS_crossvalidate == 0) {
+    Require("out", FLAGS_out, "name the folder to write");
+    if (Given("scheme")) throw Error{"--scheme needs --crossvalidate"};
+  } else if (FLAGS_crossvalidate < 2) {
+    throw Error{"--crossvalidate must be 0 or at least 2 folds"};
+  }
+  return choice;
+}
+
+// Prints and writes the scores of a cross-validation.
+inline int ScoreFolds(const std::function<Result<BodyValidation>(const RunProgress&)>& validate) {
+  TrainingLine line;
+  const BodyValidation validation =
+      OrFail(validate([&](const std::string& step, double done) { line.Show(step, done); }));
+  line.Finish();
+  std::printf("%s", BodyText(validation.evaluation).c_str());
+  if (FLAGS_json_out.empty()) return kDone;
+  nlohmann::ordered_json json = ResultHead(kScoresSchema);
+  AddBodyJson(validation.evaluation, &json);
+  json["run"] = {{"training_seconds", validation.training_seconds}};
+  OrFail(WriteJson(FLAGS_json_out, json));
+  return kDone;
+}
+
+inline std::string InOut(const char* name) {
+  return (std::filesystem::path(FLAGS_out) / name).string();
+}
+
+// Makes the folder; returns the file of the checkpoints in it.
+inline std::string MakeOut() {
+  OrFail(MakeFolder(FLAGS_out));
+  const std::string checkpoint = InOut("checkpoint.bin");
+  OrFail(CheckWritable(checkpoint));
+  SayWhenInterrupted(KeptCheckpoints(FLAGS_out));
+  return checkpoint;
+}
+
+// The training as a network's file describes it; data: under this key.
+inline nlohmann::ordered_json TrainingJson(const char* key, const nlohmann::ordered_json& data) {
+  nlohmann::ordered_json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
+  json[key] = data;
+  return json;
+}
+
+inline nlohmann::ordered_json JsonOfData(const std::vector<BodyRecording>& recordings) {
+  nlohmann::ordered_json data = nlohmann::ordered_json::array();
+  for (const BodyRecording& recording : recordings) {
+    data.push_back(
+        {{"id", recording.pendulum.id}, {"content_hash", recording.pendulum.content_hash}});
+  }
+  return data;
+}
+
+inline void WriteCurve(const TrainingCourse& course, const std::string& title) {
+  OrFail(WriteFileAtomically(InOut("curve.svg"), TrainingCurveSvg(course.curve, title)));
+}
+
+// "12 s (resumed from a checkpoint)"
+inline std::string TimeText(const TrainingLine& line, const TrainingCourse& course) {
+  return Rounded(line.Seconds(), 3) + " s" + (course.resumed ? " (resumed from a checkpoint)" : "");
+}
+
+}  // namespace pushid
