@@ -8,6 +8,7 @@
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/restoration_flags.h"
 #include "ident/bodies/body_evaluation.h"
+#include "ident/formations/formation_run.h"
 #include "ident/parameters/presets.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"
@@ -42,9 +43,8 @@ std::optional<BodyEvaluation> Bodies(const RestorationFlags& flags, const Identi
 
 // Whether errors are of recordings that the model was fitted to, which predictions of new ones are
 // not; empty where they are not.
-std::string FittedText(const std::vector<PendulumRecording>& recordings) {
+std::string FittedText(const FittedModel& model, const std::vector<PendulumRecording>& recordings) {
   std::set<std::string> fitted;
-  const FittedModel model = OrFail(ReadFittedModel(ModelFile()));
   for (const FittedRecording& r : model.fit.recordings) fitted.insert(r.content_hash);
   const auto among = std::count_if(recordings.begin(), recordings.end(), [&](const auto& r) {
     return !r.content_hash.empty() && fitted.count(r.content_hash) > 0;
@@ -73,20 +73,24 @@ int Run() {
   WarnGrouped(InputWarnings(model, pendulums));
   const Evaluation evaluation = Evaluate(model, pendulums, ObservedFrames(), group_by,
                                          ForecastUseFlag(), {drawn, kFuturesSeed});
+  const FittedModel fitted = OrFail(ReadFittedModel(ModelFile()));
+  const std::string person = PersonText(fitted.fit, model, pendulums);
   const std::string steps = StepsReport(pendulums, FLAGS_per_recording);
   if (FLAGS_details || FLAGS_per_recording) {
-    std::printf("%s\n%s%s", EvaluationText(evaluation, FLAGS_per_recording).c_str(), steps.c_str(),
+    std::printf("%s\n%s%s%s", EvaluationText(evaluation, FLAGS_per_recording).c_str(),
+                steps.c_str(), TextLines(person).c_str(),
                 bodies ? ("\n" + BodyText(*bodies)).c_str() : "");
   } else {
     Screen screen = EvaluationScreen(evaluation);
-    screen.verdict += FittedText(pendulums);
-    screen.paragraphs.push_back(steps);
+    screen.verdict += FittedText(fitted, pendulums);
+    screen.paragraphs.insert(screen.paragraphs.end(), {steps, person});
     if (bodies) screen.tables.push_back(BodyTable(*bodies));
     std::printf("%s", screen.ToString().c_str());
   }
   nlohmann::ordered_json json = ResultHead(kScoresSchema);
   json.update(ToJson(evaluation));
   AddStepsJson(pendulums, &json);
+  if (!person.empty()) json["person"] = person;
   if (bodies) AddBodyJson(*bodies, &json);
   WriteIfNamed(FLAGS_json_out, json);
   return kDone;

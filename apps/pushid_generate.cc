@@ -1,24 +1,10 @@
 // apps: pushid-generate: motion continued by a learned generator, judged and shown: windows of
 // motion capture, and recorded groups.
-#include <gflags/gflags.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/published_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/support/app_support.h"
-#include "datasets/files/atomic_file.h"
-#include "datasets/files/json_file.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "datasets/loading/generator_data.h"
 #include "ident/bodies/animation.h"
@@ -32,7 +18,7 @@
 #include "ident/model/model_json.h"
 #include "ident/model/model_rollout.h"
 #include "ident/problem/parallel.h"
-#include "ident/validation/scores_json.h"
+#include "ident/validation/scores_report.h"
 
 namespace {
 
@@ -313,8 +299,7 @@ int FromClips(const TrainedNetworks& trained, const GenerateOptions& options) {
     ShowWindow(SceneOfWindow(*generator, windows, &json));
   }
   json["run"] = {{"seconds_per_window", per_window}};
-  if (FLAGS_json_out.empty()) return kDone;
-  OrFail(WriteJson(FLAGS_json_out, json));
+  WriteIfNamed(FLAGS_json_out, json);
   return kDone;
 }
 

@@ -1,16 +1,6 @@
 // apps: pushid-path: most probable paths under a model's process noise.
-#include <gflags/gflags.h>
-
-#include <cstdio>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
-
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
-#include "datasets/files/json_file.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/forecasts/most_probable_path.h"
 
@@ -87,7 +77,7 @@ int Run() {
     OrFail(WritePathCsv(FLAGS_out, best, 1.0 / FLAGS_fps));
     std::printf("%d frames written to %s\n", best.states.num_frames(), FLAGS_out.c_str());
   }
-  if (!FLAGS_json_out.empty()) OrFail(WriteJson(FLAGS_json_out, json));
+  WriteIfNamed(FLAGS_json_out, json);
   return kDone;
 }
 

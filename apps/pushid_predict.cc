@@ -7,6 +7,8 @@
 #include "apps/flags/restoration_flags.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_recording.h"
+#include "ident/figures/screen.h"
+#include "ident/formations/formation_run.h"
 #include "ident/model/model_rollout.h"
 #include "ident/parameters/presets.h"
 #include "ident/prediction/online_predictor.h"
@@ -160,6 +162,8 @@ int Run() {
     std::printf("%s; no recorded motion to compare with\n",
                 ChangedPushesText(changed, recording).c_str());
   }
+  const FittedModel fitted = OrFail(ReadFittedModel(ModelFile()));
+  std::printf("%s", TextLines(PersonText(fitted.fit, model, {recording})).c_str());
   std::printf("%s", PredictedStepsText(recording, prediction).c_str());
   return PrintFutures(model, recording, FLAGS_frames);
 }

@@ -1,17 +1,10 @@
 // apps: pushid-train-generator: learned generators of motion.
-#include <gflags/gflags.h>
-
-#include <cstdio>
 #include <functional>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
 
+#include "apps/flags/command_line.h"
 #include "apps/flags/published_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/training_flags.h"
-#include "datasets/files/names.h"
 #include "ident/model/model_json.h"
 #include "ident/training/generator_training.h"
 

@@ -1,16 +1,9 @@
 // apps: pushid-train-restoration: networks that turn pendulums into bodies.
-#include <gflags/gflags.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <nlohmann/json.hpp>
-#include <string>
-
+#include "apps/flags/command_line.h"
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/postprocess_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/training_flags.h"
-#include "datasets/files/names.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/model/model_json.h"
 

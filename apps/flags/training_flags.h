@@ -1,21 +1,11 @@
 // apps: flags of the programs that train networks of bodies, and what they do alike.
 #pragma once
 
-#include <gflags/gflags.h>
-
-#include <cstdio>
-#include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "apps/flags/command_line.h"
-#include "apps/support/app_support.h"
-#include "datasets/files/atomic_file.h"
-#include "datasets/files/json_file.h"
 #include "ident/training/restoration_training.h"
-#include "ident/validation/scores_json.h"
+#include "ident/validation/scores_report.h"
 
 DEFINE_string(out, "", "folder to write: the network (JSON), weights.npy, curve.svg");
 DEFINE_int32(crossvalidate, 0,
@@ -35,12 +25,11 @@ namespace pushid {
 // "kind of restoration: window (fast, default), cvae (LDP's chain)"
 template <typename Rows, typename Keep>
 std::string KindHelp(const std::string& noun, const Rows& rows, Keep keep) {
-  std::string kinds;
+  std::vector<std::string> kinds;
   for (const auto& row : rows) {
-    if (!keep(row)) continue;
-    kinds += (kinds.empty() ? "" : ", ") + std::string(row.name) + " (" + row.what + ")";
+    if (keep(row)) kinds.push_back(std::string(row.name) + " (" + row.what + ")");
   }
-  return "kind of " + noun + ": " + kinds;
+  return "kind of " + noun + ": " + Joined(kinds);
 }
 
 // The folds that the flags ask for; throws where they do not go together.
@@ -63,11 +52,10 @@ inline int ScoreFolds(const std::function<Result<BodyValidation>(const RunProgre
       OrFail(validate([&](const std::string& step, double done) { line.Show(step, done); }));
   line.Finish();
   std::printf("%s", BodyText(validation.evaluation).c_str());
-  if (FLAGS_json_out.empty()) return kDone;
   nlohmann::ordered_json json = ResultHead(kScoresSchema);
   AddBodyJson(validation.evaluation, &json);
   json["run"] = {{"training_seconds", validation.training_seconds}};
-  OrFail(WriteJson(FLAGS_json_out, json));
+  WriteIfNamed(FLAGS_json_out, json);
   return kDone;
 }
 
@@ -80,7 +68,7 @@ inline std::string MakeOut() {
   OrFail(MakeFolder(FLAGS_out));
   const std::string checkpoint = InOut("checkpoint.bin");
   OrFail(CheckWritable(checkpoint));
-  SayWhenInterrupted(KeptCheckpoints(FLAGS_out));
+  SayWhenTrainingInterrupted(FLAGS_out);
   return checkpoint;
 }
 

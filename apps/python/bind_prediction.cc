@@ -145,6 +145,7 @@ py::dict PredictOn(const Model& model, const SharedRecording& recording, int obs
   WarnOfInputs(identified, seen);
   py::dict dict =
       DictOf(Unwrapped(PredictFrom(identified, seen, observed, frames, use), Fault::kUsage), seen);
+  dict["person"] = PersonText(model.fitted->fit, identified, {seen});
   if (samples > 0) {
     dict["samples"] =
         DrawsArray(Unwrapped(Drawn(model, identified, seen, frames, samples, seed), Fault::kUsage));

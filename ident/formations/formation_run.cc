@@ -2,10 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/motion_formats.h"
@@ -16,6 +18,7 @@
 #include "ident/prediction/futures.h"
 #include "ident/prediction/propagation.h"
 #include "ident/problem/statistics.h"
+#include "models/formation.h"
 #include "models/self_terms.h"
 #include "models/skeleton_mapping.h"
 
@@ -192,6 +195,40 @@ FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int 
     summary.outcome = Judge(run, n, summary.onset_frame);
   }
   return run;
+}
+
+std::string PersonText(const FitResult& fit, const IdentifiedModel& model,
+                       const std::vector<PendulumRecording>& recordings) {
+  const auto external = [](const PendulumRecording& recording) {
+    const std::vector<ScenePush>& pushes = recording.scene.pushes;
+    return std::any_of(pushes.begin(), pushes.end(), [](const ScenePush& push) {
+      return push.kind == PushKind::kExternal && !push.force.empty();
+    });
+  };
+  if (!model.push_range || model.push_range->net_s.empty() ||
+      !model.push_range->external_s.empty() ||
+      std::none_of(recordings.begin(), recordings.end(), external)) {
+    return "";
+  }
+  std::string text = "person: of " +
+                     CountText(model.push_range->people.size(), "person", "people") + " in " +
+                     CountText(fit.recordings.size(), "recording") +
+                     " of net pushes (--stance=" + NameOf(model.options.stance) + ")";
+  // The weakest pushes, where those who stand end, and the hardest, where those who step end.
+  for (const auto& [speed, duration, measured] :
+       {std::array{0.20, 0.60, 0.02}, std::array{0.62, 0.86, 0.68}}) {
+    text += "; given " + Rounded(speed, 2) + " m/s in " + Rounded(duration, 2) + " s";
+    for (const double height : {1.0, 1.25}) {  // of the rod
+      Scene scene = FormationScene({{0.0, 0.0}}, {75.0, kReferenceRod, 0.0}, 1.0 / 60.0);
+      AddHipPush(0, {75.0 * speed, 0.0, duration, 0.0, height}, &scene);
+      const FormationRun run = RunFormation(model, scene, 480);  // 8 s
+      text += height > 1.0 ? " and at the trunk " : " at the hip it ends ";
+      text += run.summaries.empty() ? "on the ground"
+                                    : Rounded(run.summaries[0].displacement, 2) + " m";
+    }
+    text += " away (ten measured people: " + Rounded(measured, 2) + " m)";
+  }
+  return text;
 }
 
 double HipSpeed(const FormationRun& run, int person, int frame) {

@@ -77,6 +77,34 @@ TEST_F(EvaluateAppTest, ScoresStandUnderTheAgreedKeys) {
   }
   EXPECT_TRUE(Contains(OneLine(Succeeded(RunApp("pushid-evaluate", {model, Recordings()})).out),
                        "The model was fitted to 12 of the 12 recordings"));
+  EXPECT_FALSE(json.contains("person")) << "the fit's own pushes";
+}
+
+TEST_F(EvaluateAppTest, OfExternalPushesItSaysWhoseAnswerItIs) {
+  const std::string model = "--model=" + FitModel();
+  const std::string external = ChangedManifest([](nlohmann::ordered_json& json) {
+    for (auto& recording : json["recordings"]) recording["push_kind"] = "external";
+  });
+  const std::string said =
+      "person: of 2 people in 12 recordings of net pushes (--stance=slide); given 0.2 m/s in 0.6 s "
+      "at the hip it ends ";
+  const std::string readme = ReadText(PUSHID_SOURCE_DIR "/models/README.md");
+  EXPECT_TRUE(Contains(readme, "\n| 0.2 | 0.6 | 0.15 | 0.02 / ")) << "the measured pushes";
+  EXPECT_TRUE(Contains(readme, "\n| 0.62 | 0.86 | 0.88 | 0.01 / 0.68 "));
+  for (const char* more : {"--details=false", "--details"}) {
+    const AppRun run = Succeeded(
+        RunApp("pushid-evaluate", {model, external, more, "--json_out=" + Path("scores.json")}));
+    EXPECT_TRUE(Contains(OneLine(run.out), said));
+    EXPECT_TRUE(
+        Contains(OneLine(run.out), " m away (ten measured people: 0.02 m); given 0.62 m/s"));
+    EXPECT_TRUE(Contains(OneLine(run.out), " m away (ten measured people: 0.68 m)"));
+    EXPECT_EQ(Json(Path("scores.json"))["person"].get<std::string>().find(said), 0u);
+  }
+  const std::vector<std::string> predict = {model, "--id=" + id_, "--out=" + Path("path.csv")};
+  EXPECT_TRUE(
+      Contains(OneLine(Succeeded(RunApp("pushid-predict", With(predict, {external}))).out), said));
+  EXPECT_FALSE(Contains(Succeeded(RunApp("pushid-predict", With(predict, {Recordings()}))).out,
+                        "person: of 2"));
 }
 
 TEST_F(EvaluateAppTest, AWhatIfChangesTheScores) {

@@ -193,7 +193,8 @@ class Result:
         3), without `observed`: from the process noise if the model has one, or from the covariance of the parameters and
         the errors of the fitted recordings. frames: number of frames (0: as in the recording). set: {name: value} for "what if";
         push_scale multiplies the push, and push_again lists frames at which it comes again. Raises FitError if a
-        rollout leaves the model's domain; warns about pushes unlike the fitted ones.
+        rollout leaves the model's domain; warns about pushes unlike the fitted ones. "person" says whose answer it is where
+        pushes are external and those of the fit were not, else "".
         """
         return _pushid.predict(self._model, *checked(recording), observed, frames, samples, seed, text_of("set", set or {}),
                                push_scale, list(push_again), forecast)
