@@ -148,7 +148,7 @@ inline bool EstimatesSigmas(const FitOptions& options) {
 // recordings would hold 20,000 rows of them.
 inline constexpr int kMostGaussNewtonWeights = 2000;
 bool IsLarge(const FitOptions& options);
-// Until it has been trained.
+// Whether a large network has yet to be trained.
 inline bool NeedsGradientTraining(const FitOptions& options) {
   return !options.hold_network && IsLarge(options);
 }
@@ -156,7 +156,8 @@ inline bool NeedsGradientTraining(const FitOptions& options) {
 // As JSON: the options, and the parameter table.
 nlohmann::ordered_json OptionsJson(const FitOptions& options);
 nlohmann::ordered_json TableJson(const ParameterTable& table);
-// Both: everything that decides what a fit of given recordings finds. A user's own laws are named
+// The options and the table: everything that decides what a fit of given recordings finds. A user's
+// own laws are named
 // ("force_laws"), so that a reader knows what to ask for; they cannot be written.
 nlohmann::ordered_json SettingsJson(const FitOptions& options);
 

@@ -136,7 +136,6 @@ Row CountRow(const char* name, const char* json, OptionField<int> field, const c
   return row;
 }
 
-// Yes or no.
 Row BoolRow(const char* name, const char* json, OptionField<bool> field, const char* help) {
   Row row = FieldRow(name, json, field, help, "must be true or false");
   row.is_bool = true;

@@ -147,7 +147,7 @@ MaybeError AddForceLaw(std::shared_ptr<const ForceLaw> law, ModelOptions* model,
 MaybeError AddNamedLaws(const std::vector<std::string>& names, const ForceLaws& laws,
                         ModelOptions* model, ParameterTable* table);
 
-// Their names, in the model's order.
+// Names of the laws, in the model's order.
 std::vector<std::string> LawNames(const ModelOptions& model);
 
 }  // namespace pushid

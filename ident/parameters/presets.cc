@@ -55,16 +55,17 @@ FitOptions GroupPreset() {
   o.model.interaction.spring = o.model.interaction.damping = true;
   o.self_force = SelfForceKind::kLinear;
   o.table[kKdTheta] = BaseTable()[kKdTheta];
-  // Free, it predicts no better (hipADE 0.1000 against 0.1009 m, mean of three sets of folds).
+  // A free tail base predicts no better (hipADE 0.1000 against 0.1009 m, mean of three sets of
+  // folds).
   o.table[kTailBase] = BaseTable()[kTailBase];
   // A smaller weight leaves somebody in a line a little too fast.
   o.settling_weight = 80.0;
   o.pool = "all,-mu";  // the same floor: by setting, mu predicts no better and turns negative
-  // Estimated, most spreads are nil and the fit is slow to settle.
+  // Most spreads would be estimated as nil, and the fit would be slow to settle.
   o.pooling_sigma = 0.3;
-  // Held at 0, unseen recordings are predicted worse (hipADE 0.103 against 0.098 m in 5 folds): in
-  // groups the duration stands for no condition. Longer pushes than there were are bounded
-  // (models/push.h).
+  // An exponent held at 0 predicts unseen recordings worse (hipADE 0.103 against 0.098 m in 5
+  // folds): in groups the duration stands for no condition. Longer pushes than there were are
+  // bounded (models/push.h).
   FreeFrom({Start{kTailExponent, 1.5, 1.5}}, &o.table);
   // Going on to 1e-7 takes half as long again and moves no parameter by more than a tenth of its
   // standard error.
@@ -72,7 +73,7 @@ FitOptions GroupPreset() {
   return o;
 }
 
-// Feet that hold: everything is told by the data, so priors are as wide as their centres, but for
+// Data tell everything about feet that hold, so priors are as wide as their centres, but for
 // where the body's mass is: men and women, and where the hip's marker is, differ by some 5 %.
 void SetFixed(FitOptions* options) {
   options->model.push = PushUse::kAsRecorded;
@@ -190,7 +191,7 @@ void FreeByTerm(const ModelOptions& model, ParameterTable* table) {
   }
 }
 
-// Sideways as forwards, but for what a flag names.
+// Ties sideways parameters to the forward ones, but for those that a flag names.
 void TieSideways(FitOptions* o) {
   for (const SidewaysParameter& pair : kSidewaysParameters) {
     ParameterSpec& spec = o->table[pair.sideways];
@@ -201,7 +202,7 @@ void TieSideways(FitOptions* o) {
   }
 }
 
-// Sideways free where forwards is, from the same start.
+// Frees sideways parameters where the forward ones are free, from the same start.
 void FreeSideways(FitOptions* o) {
   if (o->model.directions != Directions::kBody) return;
   for (const SidewaysParameter& pair : kSidewaysParameters) {

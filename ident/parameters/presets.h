@@ -73,7 +73,7 @@ void SetLikelihood(Likelihood likelihood, FitOptions* options);
 // Likelihoods of single steps are for models without.
 std::string MemoryOf(const ModelOptions& model);
 
-// Masses by the table: the point at the hip to start from, nothing free.
+// Sets where a body's mass is. By the table, it starts as a point at the hip, with nothing free.
 void SetBody(BodyModel body, FitOptions* options);
 
 // With a delay its parameters are free, with weak priors.
