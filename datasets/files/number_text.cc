@@ -151,33 +151,26 @@ const char* SeparatorName(char separator) {
                             : "blanks";
 }
 
-TableCells::TableCells(std::string_view row, char separator) : rest_(row), separator_(separator) {
-  if (separator_ == kBlanks) rest_ = Trimmed(rest_);
-  more_ = separator_ != kBlanks || !rest_.empty();
-}
-
-bool TableCells::Next(std::string_view* cell) {
-  if (!more_) return false;
-  if (separator_ == kBlanks) {
-    *cell = NextToken(&rest_);
-    rest_ = Trimmed(rest_);
-    more_ = !rest_.empty();
-    return true;
+void SplitCells(std::string_view row, char separator, std::vector<std::string_view>* cells) {
+  cells->clear();
+  if (separator == kBlanks) {
+    for (auto cell = NextToken(&row); !cell.empty(); cell = NextToken(&row)) cells->push_back(cell);
+    return;
   }
-  const std::size_t end = rest_.find(separator_, BehindQuotes(rest_));
-  more_ = end != std::string_view::npos;
-  *cell = Trimmed(rest_.substr(0, end));
-  if (cell->size() > 1 && cell->front() == '"' && cell->back() == '"') {
-    *cell = Trimmed(cell->substr(1, cell->size() - 2));
+  for (std::size_t end = 0; end != std::string_view::npos;) {
+    end = row.find(separator, BehindQuotes(row));
+    std::string_view cell = Trimmed(row.substr(0, end));
+    if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') {
+      cell = Trimmed(cell.substr(1, cell.size() - 2));
+    }
+    cells->push_back(cell);
+    if (end != std::string_view::npos) row.remove_prefix(end + 1);
   }
-  rest_.remove_prefix(more_ ? end + 1 : rest_.size());
-  return true;
 }
 
 std::vector<std::string_view> CellsOf(std::string_view row, char separator) {
   std::vector<std::string_view> cells;
-  TableCells rest(row, separator);
-  for (std::string_view cell; rest.Next(&cell);) cells.push_back(cell);
+  SplitCells(row, separator, &cells);
   return cells;
 }
 

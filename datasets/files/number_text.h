@@ -69,18 +69,8 @@ char SeparatorOf(std::string_view names);
 // Plural, for messages.
 const char* SeparatorName(char separator);
 
-// Takes cells off a row one after the other. A separator in quotes belongs to its cell.
-class TableCells {
- public:
-  TableCells(std::string_view row, char separator);
-  bool Next(std::string_view* cell);
-
- private:
-  std::string_view rest_;
-  char separator_;
-  bool more_;
-};
-
+// The cells of a row. A separator in quotes belongs to its cell.
 std::vector<std::string_view> CellsOf(std::string_view row, char separator);
+void SplitCells(std::string_view row, char separator, std::vector<std::string_view>* cells);
 
 }  // namespace pushid

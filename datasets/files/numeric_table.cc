@@ -149,25 +149,19 @@ class TableReader {
     const bool tabs =
         format_ == TableFormat::kStorage && reader_.ended_in_newline() &&
         std::count(line.begin(), line.end(), '\t') + 1 == static_cast<std::ptrdiff_t>(row_.size());
-    TableCells cells(line, tabs ? '\t' : separator_);
-    std::size_t count = 0;
-    for (std::string_view cell; cells.Next(&cell); ++count) {
-      if (count == row_.size()) {
-        if (trailing_ && cell.empty() && !cells.Next(&cell)) break;
-        throw WrongLength(count + 1);
-      }
+    SplitCells(line, tabs ? '\t' : separator_, &cells_);
+    const std::size_t columns = row_.size();
+    if (trailing_ && cells_.size() == columns + 1 && cells_.back().empty()) cells_.pop_back();
+    if (cells_.size() < columns) throw WrongLength(cells_.size());
+    for (std::size_t i = 0; i < columns; ++i) {
+      const std::string_view cell = cells_[i];
       if (cell.empty() || EqualsIgnoringCase(cell, "nan") || EqualsIgnoringCase(cell, "n/a")) {
-        row_[count] = std::numeric_limits<double>::quiet_NaN();
-      } else if (!ParseDouble(cell, &row_[count])) {
-        // A row separated otherwise than the names is one long cell, and no number either.
-        const std::string problem = table_.names[count] + ": " + NumberProblem(cell) + kMissingCell;
-        while (++count < row_.size()) {
-          if (!cells.Next(&cell)) throw WrongLength(count);
-        }
-        throw reader_.ErrorHere(problem);
+        row_[i] = std::numeric_limits<double>::quiet_NaN();
+      } else if (!ParseDouble(cell, &row_[i])) {
+        throw reader_.ErrorHere(table_.names[i] + ": " + NumberProblem(cell) + kMissingCell);
       }
     }
-    if (count != row_.size()) throw WrongLength(count);
+    if (cells_.size() > columns) throw WrongLength(columns + 1);
     for (std::size_t i = 0; i < table_.chosen.size(); ++i) {
       table_.data[i].push_back(row_[table_.chosen[i]]);
     }
@@ -194,6 +188,7 @@ class TableReader {
   bool trailing_ = false;
   std::int64_t announced_rows_ = -1, announced_columns_ = -1;
   std::vector<double> row_;
+  std::vector<std::string_view> cells_;  // of the row
 };
 
 }  // namespace

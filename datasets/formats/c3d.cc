@@ -570,18 +570,6 @@ int C3dFile::samples_per_frame() const {
   return analog.empty() || frames == 0 ? 0 : static_cast<int>(analog[0].samples.size()) / frames;
 }
 
-int C3dFile::FindPoint(std::string_view name) const {
-  const auto found = std::find(point_names.begin(), point_names.end(), name);
-  return found == point_names.end() ? -1 : static_cast<int>(found - point_names.begin());
-}
-
-int C3dFile::FindAnalog(std::string_view name) const {
-  for (std::size_t i = 0; i < analog.size(); ++i) {
-    if (analog[i].name == name) return static_cast<int>(i);
-  }
-  return -1;
-}
-
 Result<PointMotion> PointsOfC3d(const C3dFile& file, const PointReadOptions& options) {
   return Caught([&] {
     PointMotion motion;

@@ -2,7 +2,7 @@
 // and force platforms in one binary file.
 //
 //   Result<C3dFile> file = ReadC3d("trial.c3d");
-//   file.value().points[file.value().FindPoint("LASI")][frame]   // in file.point_unit
+//   file.value().points[0][frame]   // of point_names[0], in point_unit
 //
 // Poses of segments (group ROTATION, as markerless systems write them) become points: each
 // segment's origin, under its name.
@@ -138,8 +138,6 @@ struct C3dFile {
     return points.empty() ? frames_without_points : static_cast<int>(points[0].size());
   }
   int samples_per_frame() const;
-  int FindPoint(std::string_view name) const;   // index, or -1
-  int FindAnalog(std::string_view name) const;  // index, or -1
 };
 
 // accept_truncated: of a file that ends before its last announced frame the whole frames that are

@@ -27,8 +27,8 @@ std::optional<LengthUnit> FromName<LengthUnit>(std::string_view name) {
   name = Trimmed(name);
   for (const LengthUnitRow& row : kLengthUnits) {
     if (EqualsIgnoringCase(name, row.name)) return row.value;
-    for (const char* spelling : row.spellings) {
-      if (spelling != nullptr && EqualsIgnoringCase(name, spelling)) return row.value;
+    for (const char* word : {"meter", "metre", "meters", "metres"}) {
+      if (EqualsIgnoringCase(name, StrCat(row.prefix, word))) return row.value;
     }
   }
   return std::nullopt;

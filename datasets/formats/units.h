@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,20 +21,12 @@ enum class LengthUnit { kMillimetre, kCentimetre, kMetre };
 struct LengthUnitRow {
   const char* name;  // as manifests and --length_unit spell it
   LengthUnit value;
-  double per_metre;  // so many in a metre: whole, so that conversions round once
-  std::array<const char*, 4> spellings;  // others, whatever their case
+  double per_metre;    // so many in a metre: whole, so that conversions round once
+  const char* prefix;  // before "metre", "meters", ..., whatever the case
 };
-inline constexpr LengthUnitRow kLengthUnits[] = {
-    {"mm",
-     LengthUnit::kMillimetre,
-     1e3,
-     {"millimeter", "millimetre", "millimeters", "millimetres"}},
-    {"cm",
-     LengthUnit::kCentimetre,
-     1e2,
-     {"centimeter", "centimetre", "centimeters", "centimetres"}},
-    {"m", LengthUnit::kMetre, 1.0, {"meter", "metre", "meters", "metres"}},
-};
+inline constexpr LengthUnitRow kLengthUnits[] = {{"mm", LengthUnit::kMillimetre, 1e3, "milli"},
+                                                 {"cm", LengthUnit::kCentimetre, 1e2, "centi"},
+                                                 {"m", LengthUnit::kMetre, 1.0, ""}};
 constexpr const auto& Names(LengthUnit) { return kLengthUnits; }
 static_assert(RowsAreInOrder(kLengthUnits), "RowOf finds a row by its value");
 

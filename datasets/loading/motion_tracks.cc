@@ -217,7 +217,6 @@ GapCount FillGaps(int max_gap, std::vector<Vector3d>* track, std::vector<double>
     const bool inside = begin > 0 && end < frames;
     const bool fill = inside && length <= max_gap;
     ++count.gaps;
-    count.longest = std::max(count.longest, length);
     (fill ? count.filled_frames : count.excluded_frames) += length;
     if (!fill) std::fill(weight->begin() + begin, weight->begin() + end, 0.0);
     if (inside) {

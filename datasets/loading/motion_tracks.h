@@ -43,7 +43,6 @@ struct GapCount {
   int gaps = 0;
   int filled_frames = 0;    // in gaps that are short enough
   int excluded_frames = 0;  // in longer ones, and before the first and after the last frame seen
-  int longest = 0;          // frames
 };
 
 // Fills every gap (positions that are not finite) of `track`: gaps of up to max_gap frames inside

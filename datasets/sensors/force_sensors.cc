@@ -420,18 +420,20 @@ SensorRecord FromC3d(const SensorChoice& choice, const Eigen::Vector3d& up,
   if (choice.column.rfind(kPlatform, 0) == 0) {
     TakePlatform(file, choice, up, &record, warnings);
   } else {
-    const int channel = file.FindAnalog(choice.column);
-    if (channel < 0) {
-      throw UnknownNameError(choice.file, "analog channel", ChannelNames(file), choice.column);
+    const std::vector<std::string> names = ChannelNames(file);
+    const auto found = std::find(names.begin(), names.end(), choice.column);
+    if (found == names.end()) {
+      throw UnknownNameError(choice.file, "analog channel", names, choice.column);
     }
-    const std::string& unit = file.analog[channel].unit;
+    const C3dAnalogChannel& channel = file.analog[found - names.begin()];
+    const std::string& unit = channel.unit;
     const std::optional<double> newtons = choice.gain || unit.empty() ? 1.0 : NewtonsIn(unit);
     if (!newtons) {
       throw Error{choice.column + " is in " + Quoted(unit) +
                       " (ANALOG:UNITS): give its \"gain\", in N per unit, in a list of sensors",
                   choice.file};
     }
-    for (double sample : file.analog[channel].samples) {
+    for (double sample : channel.samples) {
       record.force.push_back({*newtons * sample, 0.0, 0.0});
     }
   }

@@ -1,6 +1,7 @@
 // A small C3D file for tests.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -8,6 +9,12 @@
 #include "datasets/formats/c3d.h"
 
 namespace pushid {
+
+// The index of a point by its name.
+inline int FindPoint(const C3dFile& file, const std::string& name) {
+  const auto found = std::find(file.point_names.begin(), file.point_names.end(), name);
+  return static_cast<int>(found - file.point_names.begin());
+}
 
 // A person of three markers, mm, ten frames at 100 Hz, one marker hidden in two frames; a platform
 // of type 2 with ten samples per frame and a spare channel.

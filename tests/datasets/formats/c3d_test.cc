@@ -213,9 +213,9 @@ TEST(C3dSamples, Vicon) {
   EXPECT_EQ(file.point_unit, "mm");
   EXPECT_TRUE(file.events.empty());
   EXPECT_TRUE(file.platforms.empty());
-  const int hip = file.FindPoint("Daphnee:ASISr");
+  const int hip = FindPoint(file, "Daphnee:ASISr");
   ASSERT_GE(hip, 0);
-  const int other = file.FindPoint("Daphnee:ASISl");
+  const int other = FindPoint(file, "Daphnee:ASISl");
   ASSERT_GE(other, 0);
   // The two front points of a person's pelvis, mm.
   EXPECT_NEAR((file.points[hip][0] - file.points[other][0]).norm(), 250.0, 100.0);

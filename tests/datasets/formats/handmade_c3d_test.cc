@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
 #include "tests/test_support.h"
 
@@ -180,7 +181,7 @@ TEST_F(HandmadeC3dTest, OriginsOfSegmentsArePoints) {
         const C3dFile read = Read(Poses(processor, points, ratio));
         ASSERT_EQ(read.points.size(), points + 2u);
         EXPECT_EQ(read.num_frames(), 3);
-        const int pelvis = read.FindPoint("pelvis"), foot = read.FindPoint("l_foot");
+        const int pelvis = FindPoint(read, "pelvis"), foot = FindPoint(read, "l_foot");
         ASSERT_GE(pelvis, 0);
         ASSERT_GE(foot, 0);
         for (int t = 0; t < 3; ++t) {
