@@ -247,20 +247,12 @@ Row StanceRow() {
   return MayBeAbsent(row);
 }
 
-std::string SelfForceHelp() {
-  std::string text = "additional self force: none, ";
-  for (const SelfForceLaw& law : kSelfForces) {
-    if (law.value != SelfForceKind::kNone)
-      text += law.name + (" (" + std::string(law.note)) + "), ";
-  }
-  return text +
-         "a network by kind and hidden size (mlp:4, or LDP's ldp:256:32 with its embedding), or "
-         "linear and a network, comma-separated";
-}
-
 Row SelfForceRow() {
-  const std::string help = SelfForceHelp();
-  Row row = Decided(WordsRow("self_force", OptionStage::kModel, help.c_str(),
+  const char* const help =
+      "additional self force: none, linear (cross terms, quadratic), a network by kind and hidden "
+      "size (mlp:4, or LDP's ldp:256:32 with its embedding), or linear and a network, "
+      "comma-separated";
+  Row row = Decided(WordsRow("self_force", OptionStage::kModel, help,
                              [](const std::string& text, FitOptions* o) -> MaybeError {
                                const Result<SelfForceChoice> choice =
                                    ParseSelfForce("--self_force", text);
@@ -285,9 +277,8 @@ Row SelfForceRow() {
 
 Row RodRow() {
   Row row = WordsRow("rod", OptionStage::kModel,
-                     "the rod's length: constant, or a state that a learned law changes, together "
-                     "with the cart's height: linear, mlp:4 (hidden sizes); or LDP's, whose cart "
-                     "keeps its height, ldp:128-128",
+                     "the rod's length: constant, or a state that LDP's learned law changes, "
+                     "ldp:128-128 (hidden sizes)",
                      [](const std::string& text, FitOptions* o) -> MaybeError {
                        const Result<RodShape> rod = ParseRod("--rod", text);
                        if (!rod.ok()) return rod.error();

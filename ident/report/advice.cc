@@ -193,10 +193,6 @@ void Adviser::Solver() {
 
 void Adviser::Identifiability() {
   for (const NullDirection& n : result_.uncertainty.null_directions) {
-    if (n.parameters == std::vector<std::string>{"rod_lift"}) {
-      Add("The length law of the rod has no effect; leave it out.", Same().Set("rod", "constant"));
-      continue;
-    }
     Add("Not identifiable: " + n.sentence + ". Fix one of them.",
         Same().Append("fix", n.parameters.back()));
   }
@@ -252,7 +248,7 @@ FitCommand Adviser::DecayingModes() const {
 void Adviser::Person() {
   const FitOptions& o = result_.options;
   if (OfSteps() || IsLarge(o)) return;  // nothing holds them
-  const Verdict verdict = VerdictOf(result_.behaviour, o.model);
+  const Verdict verdict = VerdictOf(result_.behaviour);
   const std::string sentence = Capitalized(VerdictSentence(verdict, result_.behaviour, o.model));
   const bool tail = o.model.push_tail == PushTail::kExponential;
   switch (verdict) {
@@ -262,9 +258,6 @@ void Adviser::Person() {
       if (result_.uncertainty.settling.dropped()) return;  // it was held, and let go
       return Add(sentence + "; check the cost of a stronger settling constraint.",
                  SettleHarder(kSomeSettling));
-    case Verdict::kRodRunsAway:
-      return Add(sentence + "; check how much accuracy is lost with a constant rod.",
-                 Same().Set("rod", "constant"));
     case Verdict::kSelfPropelling:
       if (result_.uncertainty.settling.dropped()) return;
       if (tail) {
