@@ -8,7 +8,6 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <complex>
 
 namespace pushid {
 
@@ -22,27 +21,7 @@ SymmetricEigen DecomposeSymmetric(const Eigen::MatrixXd& a) {
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-// By the blocks of its real Schur form: Eigen's own solver would compile eigenvectors too.
-Eigen::VectorXcd Eigenvalues(const Eigen::MatrixXd& a) {
-  const Eigen::RealSchur<Eigen::MatrixXd> schur(a, false);
-  const Eigen::MatrixXd& t = schur.matrixT();
-  Eigen::VectorXcd values(a.cols());
-  for (Eigen::Index i = 0; i < a.cols(); ++i) {
-    if (i + 1 == a.cols() || t(i + 1, i) == 0.0) {
-      values[i] = t(i, i);
-      continue;
-    }
-    const double half = 0.5 * (t(i, i) - t(i + 1, i + 1));
-    const double largest = std::max({std::abs(half), std::abs(t(i + 1, i)), std::abs(t(i, i + 1))});
-    const double turn =
-        largest * std::sqrt(std::abs(half / largest * (half / largest) +
-                                     t(i + 1, i) / largest * (t(i, i + 1) / largest)));
-    values[i] = std::complex<double>(t(i + 1, i + 1) + half, turn);
-    values[i + 1] = std::conj(values[i]);
-    ++i;
-  }
-  return values;
-}
+Eigen::VectorXcd Eigenvalues(const Eigen::MatrixXd& a) { return a.eigenvalues(); }
 
 double SpectralRadius(const Eigen::MatrixXd& a) { return Eigenvalues(a).cwiseAbs().maxCoeff(); }
 

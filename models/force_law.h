@@ -13,14 +13,14 @@
 #include <string>
 #include <vector>
 
-#include "models/dual.h"
 #include "models/ipm.h"
+#include "models/jet.h"
 #include "models/options.h"
 #include "models/parameters.h"
 
 namespace pushid {
 
-// What a law may know of a person besides the state; constant over a rollout.
+// The person as a law may see it besides the state; constant over a rollout.
 struct LawPerson {
   Body body;
   Eigen::Vector2d posture = Eigen::Vector2d::Zero();  // reference (theta, phi), rad

@@ -30,29 +30,14 @@ std::vector<LatticePoint> DiamondPoints(int people) {
   return points;
 }
 
-std::vector<LatticePoint> GridPoints(int people) {
-  const int width = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(people))));
+std::vector<LatticePoint> Points(FormationShape shape, int people) {
+  if (shape == FormationShape::kDiamond) return DiamondPoints(people);
+  const int width = shape == FormationShape::kLine
+                        ? 1
+                        : static_cast<int>(std::ceil(std::sqrt(static_cast<double>(people))));
   std::vector<LatticePoint> points;
   for (int n = 0; n < people; ++n) points.push_back({n / width, n % width});
   return points;
-}
-
-std::vector<LatticePoint> LinePoints(int people) {
-  std::vector<LatticePoint> points;
-  for (int n = 0; n < people; ++n) points.push_back({n, 0});
-  return points;
-}
-
-std::vector<LatticePoint> Points(FormationShape shape, int people) {
-  switch (shape) {
-    case FormationShape::kLine:
-      return LinePoints(people);
-    case FormationShape::kDiamond:
-      return DiamondPoints(people);
-    case FormationShape::kGrid:
-      return GridPoints(people);
-  }
-  return {};
 }
 
 }  // namespace

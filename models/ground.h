@@ -73,7 +73,7 @@ Vector4<T> GroundForce(const BodyOf<L>& body, const Angles<T>& angles, const Gro
          T(ground.gravity / kGravity - 1.0) * Gravity<T, L>(body, angles);
 }
 
-// What the ground does to a person who moves: what force platforms measure.
+// The ground's reaction to a person who moves: what force platforms measure.
 //
 // With F = M (a + A) + C + (g_n / g) G - Q_push what the ground and the muscles do to a person at
 // frame t (a = (qd(t+1) - qd(t)) / dt; A, g_n: ground.h), h the height of the ankles and F_z the

@@ -1,20 +1,12 @@
 // models: what two people do to each other: contact, LDP's forces, and the sum of the terms that a
-// model asks for.
-//
-// A term is a row of PUSHID_PAIR_TERMS (model_rows.h) and a struct here: a law of contact has
-//   template <typename T> static T Force(const ParameterSet<T>&, const T& load, const T& rate);
-// and a term between carts
-//   template <typename T> static void Add(const Pair&, const ParameterSet<T>&,
-//                                         const PendulumState<T>& n, const PendulumState<T>& j,
-//                                         PairForce<T>*);
-// which adds the generalized forces [N, N, N m, N m] that it exerts on both.
+// model asks for (InteractionTerms, options.h), as generalized forces [N, N, N m, N m] on both.
 #pragma once
 
 #include <cmath>
 #include <type_traits>
 
-#include "models/dual.h"
 #include "models/ipm.h"
+#include "models/jet.h"
 #include "models/options.h"
 #include "models/parameters.h"
 
@@ -95,7 +87,7 @@ Vector4<T> ContactGeneralizedForce(const Body& body, const Angles<T>& angles, co
 }
 
 template <typename T>
-T ContactDistance(const Eigen::Matrix<T, 2, 1>& r, const T& kappa) {
+T ContactDistance(const Vector2<T>& r, const T& kappa) {
   using std::sqrt;
   constexpr double kTiny = 1e-12;  // m^2: a derivative also where two points coincide
   return sqrt(r[0] * r[0] + kappa * kappa * r[1] * r[1] + kTiny);
@@ -133,21 +125,7 @@ T LoadBetween(const Pair& pair, const ParameterSet<T>& p, const Vector4<T>& q_n,
   return ContactLoad<T>(p, d, BetweenFirstContactPoints(pair, height));
 }
 
-// The laws of contact: N along the line, before the onset x / (x + w). rate: of the distance, m/s.
-struct ContactSpring {
-  template <typename T>
-  static T Force(const ParameterSet<T>& p, const T& load, const T& /*rate*/) {
-    return p[kContactStiffness] * load;
-  }
-};
-struct ContactDamping {
-  template <typename T>
-  static T Force(const ParameterSet<T>& p, const T& /*load*/, const T& rate) {
-    return -(p[kContactDamping] * rate);
-  }
-};
-
-// Adds what the laws of contact do to both.
+// Adds spring and damping, those that are asked for.
 template <typename T>
 void AddContact(const InteractionTerms& terms, const Pair& pair, const ParameterSet<T>& p,
                 const PosedPendulum<T>& n, const PosedPendulum<T>& j, PairForce<T>* force) {
@@ -164,10 +142,8 @@ void AddContact(const InteractionTerms& terms, const Pair& pair, const Parameter
   const Vector2<T> along(r[0] / d, kappa * kappa * r[1] / d);
   const T rate = along[0] * v[0] + along[1] * v[1];
   T f = T(0.0);
-#define PUSHID_TERM(id, Law) \
-  if (terms.id) f += Law::Force(p, x, rate);
-  PUSHID_PAIR_TERMS(PUSHID_TERM, PUSHID_NO_PAIR_TERM)
-#undef PUSHID_TERM
+  if (terms.spring) f += p[kContactStiffness] * x;
+  if (terms.damping) f += -(p[kContactDamping] * rate);
   f *= x / (x + kContactOnset);
   const Vector2<T> on_n = f * along;
   if (RealPart(on_n[0]) == 0.0 && RealPart(on_n[1]) == 0.0) return;
@@ -177,7 +153,7 @@ void AddContact(const InteractionTerms& terms, const Pair& pair, const Parameter
   force->acts = true;
 }
 
-// What people do to each other in LDP (Yue et al., CVPR 2024, section 3.2): a
+// LDP's forces between people (Yue et al., CVPR 2024, section 3.2): a
 // repulsive potential between carts and torques against leaning on each other.
 //
 // With r = r_n - r_j and v = v_j - v_n of the carts, d = |r|, dt = 1/60 s:
@@ -241,46 +217,32 @@ Vector4<double> Reals(const Vector4<T>& v) {
   return {RealPart(v[0]), RealPart(v[1]), RealPart(v[2]), RealPart(v[3])};
 }
 
-struct LdpPublished {
-  template <typename T>
-  static void Add(const Pair&, const ParameterSet<T>& p, const PendulumState<T>& n,
-                  const PendulumState<T>& j, PairForce<T>* force) {
-    if (!InLdpRange(p, n.q, j.q)) return;
-    force->acts = true;
-    AddOn(p, n, j, &force->on_n);
-    AddOn(p, j, n, &force->on_j);
-  }
+// LDP's force on n.
+template <typename T>
+Vector4<T> LdpForce(const ParameterSet<T>& p, const PendulumState<T>& n,
+                    const PendulumState<T>& j) {
+  const Vector2<T> r = n.q.template head<2>() - j.q.template head<2>();
+  const Vector2<T> v = j.qd.template head<2>() - n.qd.template head<2>();
+  const Vector2<T> repulsion = LdpRepulsion(p, r, v);
+  const LdpTorqueSigns signs = LdpTable(Reals(n.q), Reals(j.q));
+  return {repulsion[0], repulsion[1], static_cast<double>(signs.theta) * p[kLeanTheta],
+          static_cast<double>(signs.phi) * p[kLeanPhi]};
+}
 
- private:
-  template <typename T>
-  static void AddOn(const ParameterSet<T>& p, const PendulumState<T>& n, const PendulumState<T>& j,
-                    Vector4<T>* on_n) {
-    const Eigen::Matrix<T, 2, 1> r = n.q.template head<2>() - j.q.template head<2>();
-    const Eigen::Matrix<T, 2, 1> v = j.qd.template head<2>() - n.qd.template head<2>();
-    on_n->template head<2>() += LdpRepulsion(p, r, v);
-    const LdpTorqueSigns signs = LdpTable(Reals(n.q), Reals(j.q));
-    (*on_n)[2] += static_cast<double>(signs.theta) * p[kLeanTheta];
-    (*on_n)[3] += static_cast<double>(signs.phi) * p[kLeanPhi];
-  }
-};
-
-// The sum of the interaction terms a model asks for, between two people.
-
-// Their poses as PosedPendulum or, to be posed here, as states.
+// The sum of the terms a model asks for, between two people: poses as PosedPendulum or, to be posed
+// here, as states.
 template <typename T>
 PairForce<T> InteractionBetween(const InteractionTerms& terms, const Pair& pair,
                                 const ParameterSet<T>& p,
                                 const std::common_type_t<PosedPendulum<T>>& n,
                                 const std::common_type_t<PosedPendulum<T>>& j) {
   PairForce<T> force;
-#define PUSHID_TERM(id, Law) terms.id ||
-  const bool contact = PUSHID_PAIR_TERMS(PUSHID_TERM, PUSHID_NO_PAIR_TERM) false;
-#undef PUSHID_TERM
-  if (contact) AddContact<T>(terms, pair, p, n, j, &force);
-#define PUSHID_TERM(id, Law) \
-  if (terms.id) Law::Add(pair, p, n, j, &force);
-  PUSHID_PAIR_TERMS(PUSHID_NO_PAIR_TERM, PUSHID_TERM)
-#undef PUSHID_TERM
+  if (terms.spring || terms.damping) AddContact<T>(terms, pair, p, n, j, &force);
+  if (terms.ldp_published && InLdpRange(p, n.q, j.q)) {
+    force.acts = true;
+    force.on_n += LdpForce<T>(p, n, j);
+    force.on_j += LdpForce<T>(p, j, n);
+  }
   return force;
 }
 

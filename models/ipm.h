@@ -48,7 +48,7 @@ struct BodyOf {
   L pendulum_length() const { return pendulum_ratio * rod_length; }
 };
 
-// What does not change during a recording; the lengths are those of frame 0.
+// A body during a recording; the lengths are those of frame 0.
 using Body = BodyOf<double>;
 
 // The feet of who stands and steps (stance.h); elsewhere it stays as it is.
@@ -70,11 +70,10 @@ struct PendulumState {
   FeetState<T> feet = {};
 };
 
-// The body once its rod has moved. The cart rises as the rod shortens, h = h_0 + k (l_0 - l) with
-// k = lift: bent knees and raised heels.
+// The body once its rod has moved; the cart keeps its height.
 template <typename T>
-BodyOf<T> BodyNow(const Body& body, const T& rod, const T& lift) {
-  return {T(body.mass), body.rod_length + rod, body.cart_height - lift * rod, T(body.point_share),
+BodyOf<T> BodyNow(const Body& body, const T& rod) {
+  return {T(body.mass), body.rod_length + rod, T(body.cart_height), T(body.point_share),
           T(body.pendulum_ratio)};
 }
 
@@ -131,11 +130,6 @@ Vector4<T> Coriolis(const BodyOf<L>& body, const Angles<T>& angles, const Vector
 }
 
 template <typename T, typename L>
-Vector4<T> Coriolis(const BodyOf<L>& body, const Vector4<T>& q, const Vector4<T>& qd) {
-  return Coriolis(body, Angles<T>(q), qd);
-}
-
-template <typename T, typename L>
 Vector4<T> Gravity(const BodyOf<L>& body, const Angles<T>& angles) {
   const L mgl = body.point_mass() * kGravity * body.pendulum_length();
   return {T(0.0), T(0.0), -mgl * angles.s_th * angles.c_ph, -mgl * angles.c_th * angles.s_ph};
@@ -167,11 +161,6 @@ Matrix4<T> InverseMassMatrix(const BodyOf<L>& body, const Angles<T>& angles, con
   Matrix4<T> inverse;
   inverse << i00, i01, i02, i03, i01, i11, i12, i13, i02, i12, i22, i23, i03, i13, i23, i33;
   return inverse;
-}
-
-template <typename T, typename L>
-Matrix4<T> InverseMassMatrix(const BodyOf<L>& body, const Vector4<T>& q) {
-  return InverseMassMatrix(body, Angles<T>(q), body.mass);
 }
 
 // qdd for a generalized force [N, N, N m, N m].

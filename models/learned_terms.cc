@@ -1,4 +1,4 @@
-// models: sizes and names of what is learned, and derivatives of rod laws.
+// models: sizes and names of what is learned.
 #include "models/learned_terms.h"
 
 namespace pushid {
@@ -11,14 +11,13 @@ std::string NetworkName(const NetworkShape& shape) {
   return name;
 }
 
-int RodShape::num_weights() const {
-  if (!moves()) return 0;
-  int weights = 0, below = num_inputs();
+int NumLayerWeights(int inputs, const std::vector<int>& hidden, int outputs) {
+  int weights = 0;
   for (int rows : hidden) {
-    weights += rows * (below + 1);
-    below = rows;
+    weights += rows * (inputs + 1);
+    inputs = rows;
   }
-  return weights + below + (biased() ? 1 : 0);
+  return weights + outputs * (inputs + 1);
 }
 
 std::string RodName(const RodShape& shape) {
@@ -27,16 +26,6 @@ std::string RodName(const RodShape& shape) {
     name += (i == 0 ? ":" : "-") + std::to_string(shape.hidden[i]);
   }
   return name;
-}
-
-int PairShape::num_weights() const {
-  if (!any()) return 0;
-  int weights = 0, inputs = kInputs;
-  for (int size : hidden) {
-    weights += size * (inputs + 1);
-    inputs = size;
-  }
-  return weights + 4 * (inputs + 1);
 }
 
 std::string PairName(const PairShape& shape) {

@@ -1,6 +1,6 @@
-// models: what a model may be made of, one row for each: laws of friction, self forces, terms
-// between people and parameters. Names, flags, defaults, bounds, the glossary and what acts where
-// are made from the rows (options.h, interaction.h, parameters.h).
+// models: what a model may be made of, one row for each: laws of friction and parameters. Names,
+// flags, defaults, bounds, the glossary and what acts where are made from the rows (options.h,
+// self_terms.h, parameters.h).
 #pragma once
 
 // X(id, name, along_y, Law): a law of friction.
@@ -11,20 +11,6 @@
   X(kIsotropic, "isotropic", kMu, LinearDrag)      \
   X(kAnisotropic, "anisotropic", kMuY, LinearDrag) \
   X(kCoulomb, "coulomb", kMu, CoulombDrag)
-
-// Law(id, name, first, last, note): a law of closed form that --self_force names (self_terms.h).
-//   first, last  its parameters, which are zero where it does not act and are freed where it does
-//   note         for the help
-#define PUSHID_SELF_FORCES(Law) Law(kLinear, "linear", kAx, kDq, "cross terms, quadratic")
-
-// What --interaction names: terms that add up, each a flag of InteractionTerms (options.h) and a
-// formula (interaction.h).
-//
-// Contact(id, Law): along the line between the points of contact, as long as these are loaded.
-// Carts(id, Law): of people whose carts are within the range; not mutual.
-#define PUSHID_PAIR_TERMS(Contact, Carts) \
-  Contact(spring, ContactSpring) Contact(damping, ContactDamping) Carts(ldp_published, LdpPublished)
-#define PUSHID_NO_PAIR_TERM(...)  // for tables of the other kind alone
 
 // X(id, name, symbol, unit, nominal, lower, upper, scale, transform, acts, freed, meaning, when): a
 // parameter.
@@ -41,7 +27,7 @@
 //
 // Gains are quoted for the reference person (85 kg, rod 0.95 m); see GainScaleOf in self_terms.h.
 // Parameters of one term stand together: friction from kMu up to kKpX, contact from
-// kContactStiffness to kContactHeight, all that two people share from there up to kRodLift.
+// kContactStiffness to kContactHeight, all that two people share from there up to kSupportFront.
 
 // clang-format off
 #define PUSHID_PARAMETERS(X) \
@@ -217,11 +203,6 @@
     m.interaction.ldp_published, false, \
     "torque against leaning on others, x", \
     "to compare with LDP") \
-  /* the rod */ \
-  X(kRodLift, "rod_lift", "k", "1", 1, -10, 10, 0.5, kIdentity, \
-    RodMoves(m), RodMovesCart(m), \
-    "rise of the cart over the rod's shortening", \
-    "with a learned rod, always") \
   /* feet that stand and step (stance.h) */ \
   X(kSupportFront, "support_front", "b", "m", 0.1, 0.01, 0.5, 0.1, kLog, \
     m.stance == Stance::kSteps, false, \

@@ -5,6 +5,7 @@
 #include <tuple>
 
 namespace pushid {
+
 Eigen::Vector2d InteractionReach(const InteractionTerms& terms, const ParameterSet<double>& p,
                                  double lean) {
   Eigen::Vector2d reach = Eigen::Vector2d::Zero();
@@ -18,36 +19,14 @@ Eigen::Vector2d InteractionReach(const InteractionTerms& terms, const ParameterS
   return reach;
 }
 
-NeighbourGrid::GridCell NeighbourGrid::Cell(const Eigen::Vector2d& at) const {
-  return {static_cast<std::int64_t>(std::floor(at[0] / reach_[0])),
-          static_cast<std::int64_t>(std::floor(at[1] / reach_[1]))};
-}
-
-std::size_t NeighbourGrid::Bucket(const GridCell& cell) const {
-  const std::uint64_t column = static_cast<std::uint64_t>(cell[0]) * 0x9E3779B97F4A7C15u >> 20;
-  // first_ has a power of two of buckets and one more.
-  return (column + static_cast<std::uint64_t>(cell[1])) & (first_.size() - 2);
-}
-
 void NeighbourGrid::Build(const std::vector<Eigen::Vector2d>& at, const Eigen::Vector2d& reach) {
   at_ = at;
   reach_ = reach;
-  const std::size_t people = at.size();
-  if (people <= kFewPeople) return;
-  std::size_t buckets = 16;
-  while (buckets < 2 * people) buckets *= 2;
-  first_.assign(buckets + 1, 0);
-  cell_.resize(people);
-  members_.resize(people);
-  for (std::size_t n = 0; n < people; ++n) {
-    cell_[n] = Cell(at[n]);
-    ++first_[Bucket(cell_[n]) + 1];
-  }
-  std::partial_sum(first_.begin(), first_.end(), first_.begin());
-  next_.assign(first_.begin(), first_.end() - 1);
-  for (std::size_t n = 0; n < people; ++n) {
-    members_[next_[Bucket(cell_[n])]++] = {at[n], cell_[n][0], static_cast<int>(n)};
-  }
+  if (at.size() <= kFewPeople) return;
+  members_.clear();
+  for (int n = 0; n < static_cast<int>(at.size()); ++n) members_.push_back({Cell(at[n]), n});
+  std::sort(members_.begin(), members_.end(),
+            [](const Member& a, const Member& b) { return a.cell < b.cell; });
 }
 
 std::vector<int> CanonicalRank(const Scene& scene) {

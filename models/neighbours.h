@@ -1,16 +1,17 @@
 // models: who may act on whom at one frame: a search on a uniform grid of carts.
 //
-// People are sorted into the cells of a grid as wide as the reach, by a counting sort over hashed
-// columns of cells: the cost per person does not grow with the crowd, however far apart people are,
-// and who is near lies near in memory. The order in which a person meets the
-// neighbours is that of their places at frame 0 (ties: angles, then mass), never that of their
-// numbers, so that sums come out the same to the last bit however the people are numbered.
+// People are sorted by the cells of a grid as wide as the reach: the cost per person hardly grows
+// with the crowd, however far apart people are, and neighbours lie near in memory. The order in
+// which a person meets the neighbours is that of their places at frame 0 (ties: angles, then mass),
+// never that of their numbers, so that sums come out the same to the last bit however the people
+// are numbered.
 #pragma once
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "models/interaction.h"
@@ -51,15 +52,14 @@ class NeighbourGrid {
   // So few are compared with each other directly.
   static constexpr std::size_t kFewPeople = 12;
 
-  using GridCell = Eigen::Matrix<std::int64_t, 2, 1>;
+  using GridCell = std::pair<std::int64_t, std::int64_t>;
   struct Member {
-    Eigen::Vector2d at;
-    std::int64_t column;  // of cells, along x
+    GridCell cell;
     int person;
   };
 
   // Calls visit(person, place) for everybody in the person's cell and the eight around it, the
-  // person too, and for some others, each once.
+  // person too, each once; in a small crowd for everybody.
   template <typename Visit>
   void ForEachCandidate(int person, const Visit& visit) const {
     if (at_.size() <= kFewPeople) {
@@ -68,30 +68,25 @@ class NeighbourGrid {
       }
       return;
     }
-    // Three cells of a column lie in buckets one after the other.
-    const std::size_t last = first_.size() - 2;
-    for (std::int64_t dx = -1; dx <= 1; ++dx) {
-      const GridCell lowest = cell_[person] + GridCell(dx, -1);
-      const std::size_t begin = Bucket(lowest);
-      const auto visit_buckets = [&](std::size_t from, std::size_t to) {
-        for (int k = first_[from]; k < first_[to]; ++k) {
-          // Other columns may share the buckets.
-          if (members_[k].column == lowest[0]) visit(members_[k].person, members_[k].at);
-        }
-      };
-      visit_buckets(begin, std::min(begin + 3, last + 1));
-      if (begin + 3 > last + 1) visit_buckets(0, begin + 2 - last);
+    const auto [column, row] = Cell(at_[person]);
+    for (const std::int64_t beside : {column - 1, column, column + 1}) {
+      auto member =
+          std::lower_bound(members_.begin(), members_.end(), GridCell(beside, row - 1),
+                           [](const Member& m, const GridCell& lowest) { return m.cell < lowest; });
+      for (; member != members_.end() && member->cell <= GridCell(beside, row + 1); ++member) {
+        visit(member->person, at_[member->person]);
+      }
     }
   }
-  GridCell Cell(const Eigen::Vector2d& at) const;
-  std::size_t Bucket(const GridCell& cell) const;
+  GridCell Cell(const Eigen::Vector2d& at) const {
+    return {static_cast<std::int64_t>(std::floor(at[0] / reach_[0])),
+            static_cast<std::int64_t>(std::floor(at[1] / reach_[1]))};
+  }
 
   std::vector<int> rank_;
   std::vector<Eigen::Vector2d> at_;
   Eigen::Vector2d reach_ = Eigen::Vector2d::Zero();
-  std::vector<GridCell> cell_;     // of each person
-  std::vector<Member> members_;    // bucket after bucket
-  std::vector<int> first_, next_;  // the first of each bucket, and the end; scratch
+  std::vector<Member> members_;  // by cell
 };
 
 // The canonical order of a scene's people.

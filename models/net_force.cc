@@ -24,7 +24,7 @@ Vector4<double> PushForceAt(const Scene& scene, int person, int frame) {
 
 std::vector<ForcePart> ReportedParts(const ModelOptions& options) {
   std::vector<ForcePart> parts;
-  for (ForcePart part : kForceParts) {
+  for (const auto& [name, part] : kForceParts) {
     if (part == ForcePart::kNoise) continue;  // a model's rollout is without
     if (part == ForcePart::kOwn && options.own_laws.empty()) continue;
     if (part == ForcePart::kInertia) continue;  // listed where the ground moves

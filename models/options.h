@@ -11,43 +11,32 @@
 
 namespace pushid {
 
-// What people may do to each other, and the parts that the net force is made of. Every list
-// of them - flags, CSV headers, pictures, totals - is made from tables: the rows of model_rows.h
-// and those here.
-
-// What people do to each other: terms that add up (interaction.h), and one for a learned force
+// The terms between people, which add up (interaction.h), and one for a learned force
 // (learned_terms.h), which has a size besides its name (ident/parameters/fit_options.h).
 struct InteractionTerms {
-#define PUSHID_TERM(id, Law) bool id = false;
-  PUSHID_PAIR_TERMS(PUSHID_TERM, PUSHID_TERM)
-#undef PUSHID_TERM
+  bool spring = false, damping = false;  // of contact
+  bool ldp_published = false;
   bool learned = false;
   bool learned_in_range = false;  // LDP's: of every neighbour, not of those who touch
 
   // Terms that depend on the distance of the points of contact, and terms that depend on that of
   // the carts.
-#define PUSHID_TERM(id, Law) id ||
-  bool Contact() const {
-    return PUSHID_PAIR_TERMS(PUSHID_TERM, PUSHID_NO_PAIR_TERM)(learned && !learned_in_range);
-  }
-  bool AtCarts() const {
-    return PUSHID_PAIR_TERMS(PUSHID_NO_PAIR_TERM, PUSHID_TERM)(learned && learned_in_range);
-  }
-#undef PUSHID_TERM
+  bool Contact() const { return spring || damping || (learned && !learned_in_range); }
+  bool AtCarts() const { return ldp_published || (learned && learned_in_range); }
   bool Any() const { return Contact() || AtCarts(); }
-  // What one gets the other gives: contact alone.
+  // One gives what the other gets: contact alone.
   bool Mutual() const { return Any() && !learned && !AtCarts(); }
 };
 
+// The terms that --interaction names. Every list of them is made from this table.
 struct InteractionTermName {
   std::string_view name;
   bool InteractionTerms::*member;
 };
 inline constexpr InteractionTermName kInteractionTerms[] = {
-#define PUSHID_TERM(id, Law) {#id, &InteractionTerms::id},
-    PUSHID_PAIR_TERMS(PUSHID_TERM, PUSHID_TERM)
-#undef PUSHID_TERM
-};
+    {"spring", &InteractionTerms::spring},
+    {"damping", &InteractionTerms::damping},
+    {"ldp_published", &InteractionTerms::ldp_published}};
 
 // White forces that act on everybody beside all others (process_noise.h).
 enum class ProcessNoise {
@@ -59,44 +48,36 @@ constexpr EnumNames<ProcessNoise, 2> Names(ProcessNoise) {
 }
 
 // The parts of the net force, in the order of the CSV's columns. The last three are reported
-// only where they act (ReportedParts).
-#define PUSHID_FORCE_PARTS(X)                             \
-  X(kFriction, "friction")       /* of the ground */      \
-  X(kBalance, "balance")         /* PD control */         \
-  X(kLinear, "linear")           /* cross terms */        \
-  X(kPush, "push")               /* as recorded */        \
-  X(kTail, "tail")               /* of a net push */      \
-  X(kInteraction, "interaction") /* with others */        \
-  X(kNetwork, "network")         /* learned self force */ \
-  X(kNoise, "noise")             /* drawn */              \
-  X(kOwn, "own")                 /* laws of the user's */ \
-  X(kInertia, "inertia")         /* on ground that moves */
-
+// only where they act (ReportedParts). Every list of them - headers, pictures, totals - is made
+// from the table of their names.
 enum class ForcePart : int {
-#define PUSHID_FORCE_PART(id, name) id,
-  PUSHID_FORCE_PARTS(PUSHID_FORCE_PART)
-#undef PUSHID_FORCE_PART
+  kFriction,     // of the ground
+  kBalance,      // PD control
+  kLinear,       // cross terms
+  kPush,         // as recorded
+  kTail,         // of a net push
+  kInteraction,  // with others
+  kNetwork,      // learned self force
+  kNoise,        // drawn
+  kOwn,          // laws of the user's
+  kInertia       // on ground that moves
 };
+inline constexpr int kNumForceParts = 10;
+inline constexpr EnumNames<ForcePart, kNumForceParts> kForceParts = {
+    {{"friction", ForcePart::kFriction},
+     {"balance", ForcePart::kBalance},
+     {"linear", ForcePart::kLinear},
+     {"push", ForcePart::kPush},
+     {"tail", ForcePart::kTail},
+     {"interaction", ForcePart::kInteraction},
+     {"network", ForcePart::kNetwork},
+     {"noise", ForcePart::kNoise},
+     {"own", ForcePart::kOwn},
+     {"inertia", ForcePart::kInertia}}};
+static_assert(RowsAreInOrder(kForceParts));
+constexpr const auto& Names(ForcePart) { return kForceParts; }
 
-inline constexpr std::string_view kForcePartNames[] = {
-#define PUSHID_FORCE_PART(id, name) name,
-    PUSHID_FORCE_PARTS(PUSHID_FORCE_PART)
-#undef PUSHID_FORCE_PART
-};
-inline constexpr int kNumForceParts = sizeof(kForcePartNames) / sizeof(kForcePartNames[0]);
-
-// For loops over the parts.
-inline constexpr auto kForceParts = [] {
-  std::array<ForcePart, kNumForceParts> parts{};
-  for (int i = 0; i < kNumForceParts; ++i) parts[i] = static_cast<ForcePart>(i);
-  return parts;
-}();
-
-constexpr std::string_view NameOf(ForcePart part) {
-  return kForcePartNames[static_cast<int>(part)];
-}
-
-// What the balance error is measured from.
+// The posture from which the balance error is measured.
 enum class Posture {
   kUpright,  // from the vertical (LDP)
   kInitial   // from the person's posture at frame 0, with the torque that holds it
@@ -140,7 +121,7 @@ constexpr EnumNames<FrictionKind, 0 PUSHID_FRICTION_LAWS(PUSHID_FRICTION)> Names
 #undef PUSHID_FRICTION
 }
 
-// What happens to the other forces while a push lasts.
+// Treatment of the other forces while a push lasts.
 enum class PushUse {
   kAsRecorded,  // what the recording's push kind says
   kAdded        // the push is added to all other forces, whatever its kind
@@ -149,13 +130,13 @@ constexpr EnumNames<PushUse, 2> Names(PushUse) {
   return {{{"as_recorded", PushUse::kAsRecorded}, {"added", PushUse::kAdded}}};
 }
 
-// What a `net` push, which covers only its first part, does after its last published frame.
+// The force after the last published frame of a `net` push, which covers only its first part.
 enum class PushTail { kNone, kExponential };
 constexpr EnumNames<PushTail, 2> Names(PushTail) {
   return {{{"none", PushTail::kNone}, {"exponential", PushTail::kExponential}}};
 }
 
-// What the feet do.
+// The motion of the feet.
 enum class Stance {
   kSlide,  // the cart is free from the first newton on
   kSteps,  // the feet hold; one of them steps once the capture point has left their support
@@ -212,7 +193,7 @@ struct ModelOptions {
   BodyModel body = BodyModel::kLdp;
   CartDerivative cart_derivative = CartDerivative::kNone;
   InteractionTerms interaction;
-  // What is learned (learned_terms.h); null: nothing.
+  // Learned terms (learned_terms.h); null: none.
   std::shared_ptr<const LearnedTerms> learned;
   // A user's own laws (force_law.h). Their parameters take the slots from kFirstOwnParameter on, in
   // this order. AddForceLaw (ident/parameters/parameter_table.h) adds one with its rows.
@@ -220,7 +201,7 @@ struct ModelOptions {
   ProcessNoise process_noise = ProcessNoise::kNone;
 };
 
-// What the filter of unknown forces takes people to be (input_filter.h).
+// Assumptions of the filter of unknown forces (input_filter.h).
 struct InputNoise {
   double force_time = 0.1;      // s, in which an unknown force dies out
   double force = 4.0;           // its standard deviation over the mass, m/s^2

@@ -26,14 +26,14 @@ enum Parameter : int {
   kNumParameters = kFirstOwnParameter + kNumOwnParameters
 };
 
-// What two people share: the parameters of the terms between them.
+// Parameters that two people share: those of the terms between them.
 inline constexpr int kFirstPairParameter = kContactStiffness;
-inline constexpr int kNumPairParameters = kRodLift - kContactStiffness;
+inline constexpr int kNumPairParameters = kSupportFront - kContactStiffness;
 constexpr bool IsPairParameter(Parameter id) {
   return id >= kFirstPairParameter && id < kFirstPairParameter + kNumPairParameters;
 }
 
-// What process noise has: its factor, and what is measured.
+// Parameters of process noise: its factor, and errors of measurement.
 inline constexpr int kFirstNoiseParameter = kSigmaX, kLastNoiseParameter = kMeasuredHip;
 constexpr bool IsNoiseParameter(Parameter id) {
   return id >= kFirstNoiseParameter && id <= kLastNoiseParameter;
@@ -107,7 +107,7 @@ inline double TransformSlope(Transform transform, double natural) {
   return 1.0;
 }
 
-// What is known of a parameter before any fit (model_rows.h).
+// Facts of a parameter before any fit (model_rows.h).
 
 // Also how a user's own force law describes its parameters (force_law.h).
 struct ParameterFacts {
@@ -122,7 +122,7 @@ struct ParameterFacts {
   std::string_view when_to_free = {};  // another
 };
 
-// What makes a row unfit for a fit, as in "must start within its bounds"; empty: nothing.
+// The reason why a row is unfit for a fit, as in "must start within its bounds"; empty: nothing.
 std::string Violation(const ParameterFacts& facts);
 
 // In the order of Parameter.

@@ -1,6 +1,6 @@
 // models: a moving body as particles: points whose coordinates are followed from frame to frame.
 //
-// What a generator knows of the body stands in the layout alone, so that one generator serves any
+// All that a generator knows of the body stands in the layout, so that one generator serves any
 // set of markers or joints: 25 joints of CMU's motion capture, 22 of the pushes.
 #pragma once
 

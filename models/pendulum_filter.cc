@@ -12,7 +12,7 @@ PendulumFilter::PendulumFilter(const Scene& scene, const ModelOptions& options,
                                std::unique_ptr<StateStep> step)
     : scene_(scene), parameters_(parameters), step_(std::move(step)) {
   if (step_ == nullptr) {
-    step_ = std::make_unique<DualStep<Dual<double, 8>>>(scene_, options, parameters_);
+    step_ = std::make_unique<StepByJet<VectorJet>>(scene_, options, parameters_);
   }
   for (int n = 0; n < scene.num_people(); ++n) {
     PendulumState<double>& state = states_.emplace_back();

@@ -2,7 +2,7 @@
 // measurement of q, where forces are disturbed and measurements err (process_noise.h).
 //   predict: s <- step(s),  P <- A P A' + Q,  A = d step / ds,  Q = dt B M^-1 L L' M^-1 B'
 //   update:  S = P_qq + R,  P <- P - P_q S^-1 P_q',  s <- s + P_q S^-1 (z - q)
-// B = [dt; 1] as the step has it; A by dual numbers through the very forces of the rollout.
+// B = [dt; 1] as the step has it; A by jets through the very forces of the rollout.
 // Sources: Jazwinski, Stochastic Processes and Filtering Theory, 1970 (8.8); as used by CTSM-R and
 // ctsmTMB.
 //
@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-#include "models/dual.h"
+#include "models/jet.h"
 #include "models/process_noise.h"
 #include "models/rollout.h"
 
@@ -61,14 +61,14 @@ class StateStep {
 
 // By a scalar D that holds a value and eight derivatives.
 template <typename D>
-class DualStep final : public StateStep {
+class StepByJet final : public StateStep {
  public:
   // All arguments must outlive the object.
-  DualStep(const Scene& scene, const ModelOptions& options,
-           const std::vector<ParameterSet<double>>& parameters)
+  StepByJet(const Scene& scene, const ModelOptions& options,
+            const std::vector<ParameterSet<double>>& parameters)
       : scene_(scene), parameters_(Constants(parameters)), forces_(scene, options, parameters_) {}
-  DualStep(const DualStep&) = delete;
-  DualStep& operator=(const DualStep&) = delete;
+  StepByJet(const StepByJet&) = delete;
+  StepByJet& operator=(const StepByJet&) = delete;
 
   void Begin(const std::vector<PendulumState<double>>& states) override {
     states_.resize(states.size());
@@ -117,14 +117,14 @@ class DualStep final : public StateStep {
 class PendulumFilter {
  public:
   using Covariance = Eigen::Matrix<double, 8, 8>;
-  // What was expected of a measurement and what came: v ~ N(0, lower lower').
+  // A measurement less its expectation: v ~ N(0, lower lower').
   struct Innovation {
     Vector4<double> v;
     Matrix4<double> lower;
   };
 
   // parameters: one entry per person. Starts at the scene's own start, whose place is a measurement
-  // as well. step: of the same; null for one by dual numbers. Scene and options must outlive the
+  // as well. step: of the same; null for one by narrow jets. Scene and options must outlive the
   // filter.
   PendulumFilter(const Scene& scene, const ModelOptions& options,
                  const std::vector<ParameterSet<double>>& parameters,

@@ -23,7 +23,7 @@
 
 namespace pushid {
 
-// What a push's rows mean.
+// The meaning of a push's rows.
 enum class PushKind {
   kNet,                 // the whole generalized force on the pushed person while it lasts
   kNetWithoutFriction,  // inverse dynamics with the ground friction taken out: net = push +
@@ -101,7 +101,7 @@ struct TailOf {
   T BaseShare(const ParameterSet<T>& p, const T& rate) const {
     return p[kTailBase] * mass_per_force * rate;
   }
-  // What is left over the mean of the rows' horizontal force.
+  // The remaining force over the mean of the rows' horizontal force.
   template <typename T>
   T Gain(const ParameterSet<T>& p) const {
     const T rate = Rate(p);

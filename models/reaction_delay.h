@@ -23,13 +23,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/dual.h"
 #include "models/ipm.h"
+#include "models/jet.h"
 #include "models/parameters.h"
 
 namespace pushid {
 
-// What a delayed state is made of: `weight[i]` times the state `back + i` frames ago.
+// Parts of a delayed state: `weight[i]` times the state `back + i` frames ago.
 template <typename T>
 struct DelayedFrames {
   static constexpr int kCount = 4;
@@ -47,7 +47,7 @@ struct DelayedFrames {
     back = k - 1;
     for (int i = 0; i < kCount; ++i) weight[i] = w[i];
     if (k > 0) return;
-    // What is later than now is on the line through the two before: twice the one less the other.
+    // A state later than now is on the line through the two before: twice the one less the other.
     back = 0;
     const T first[] = {w[1] + 2.0 * w[0], w[2] - w[0], w[3], T(0.0)};
     for (int i = 0; i < kCount; ++i) weight[i] = first[i];
@@ -92,7 +92,7 @@ Vector4<T> PresentRate(const RolloutPath<T>& path, int now, int person) {
   return kRateAhead * qd + (1.0 - kRateAhead) * path.At(now - 1, person).qd;
 }
 
-// What control acts on: of the ankles (angles and their rates), and of steps.
+// The states that control acts on: of the ankles (angles and their rates), and of steps.
 template <typename T>
 struct Perceived {
   PendulumState<T> ankle, step;

@@ -1,4 +1,5 @@
-// models: the rollout of a scene, frame by frame by the step of the model (step.h).
+// models: the rollout of a scene, frame by frame by the step of the model (step.h), and the forces
+// of a step near rest.
 #pragma once
 
 #include <cmath>
@@ -111,6 +112,28 @@ extern template RolloutStatus Rollout<double>(const Scene&, const ModelOptions&,
                                               const std::vector<Vector4<double>>&, int,
                                               RolloutPath<double>*, FrameTable<NetForce<double>>*,
                                               const double*, const FrameTable<Vector4<double>>*);
+
+// First derivatives, at rest in the reference posture, of the net force on a person whom nobody
+// pushes or touches less gravity: does a small deviation die out (ident/problem/behaviour.h), and
+// what are the margins of the loop (ident/problem/linear_loop.h)? Where feet stand or hold, rest is
+// standing: the ankles balance, and the ground resists the cart.
+struct RestJacobian {
+  Eigen::Matrix<double, 4, 6> by_state;  // over [theta, phi, qd]
+  Eigen::Vector2d by_previous;           // diagonal: cart rows by the cart's velocity a step before
+  double ground = 0.0;  // N s/m, on the cart's velocity after a step, where feet stand
+};
+
+// The pendulum that a person is at rest.
+template <typename T>
+BodyOf<T> BodyAtRest(const ModelOptions& options, const Body& body, const ParameterSet<T>& p) {
+  return DynamicBody(options, body, p, options.stance == Stance::kFixed);
+}
+
+// By the state with all that is perceived of it at once, as without a delay; or by each alone.
+enum class RestInput { kAll, kState, kAnkle, kStep };
+
+RestJacobian LinearizeAtRest(const ModelOptions& options, const SelfForce& self,
+                             const ParameterSet<double>& p, RestInput by = RestInput::kAll);
 
 // The initial velocities that the scene itself holds.
 inline std::vector<Vector4<double>> InitialVelocities(const Scene& scene) {

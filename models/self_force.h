@@ -14,7 +14,7 @@ namespace pushid {
 
 inline constexpr double kHeldFast = 1e8;  // 1/s, times the mass: the ground on feet that hold
 
-// What standing and stepping (stance.h) know of a person: plain numbers, which have the same layout
+// A person as standing and stepping (stance.h) see it: plain numbers, which have the same layout
 // in files that are compiled for wider vectors (residuals/lanes).
 struct StanceBody {
   double rod_length, dt;  // m, s
@@ -74,13 +74,7 @@ struct SelfForce : SelfTerms<double> {
     return force;
   }
 
-  template <typename T>
-  Vector4<T> Total(const ParameterSet<T>& p, const PendulumState<T>& state,
-                   const Vector4<T>& qd_previous) const {
-    return Friction(p, state.qd) + Effort(p, state, qd_previous);
-  }
-
-  // What the person does: all but friction, which is the ground's.
+  // The person's own part: all but friction, which is the ground's.
   template <typename T>
   Vector4<T> Effort(const ParameterSet<T>& p, const PendulumState<T>& state,
                     const Vector4<T>& qd_previous) const {

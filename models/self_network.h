@@ -25,14 +25,14 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "models/dual.h"
 #include "models/enum_names.h"
 #include "models/ipm.h"
+#include "models/jet.h"
 
 namespace pushid {
 
-// What the learned terms of a person see of that person, in units of typical ranges, and
-// how they read matrices from a flat array of weights.
+// Inputs of the learned terms of a person, in units of typical ranges, and how these
+// terms read matrices from a flat array of weights.
 
 template <typename T>
 using VectorX = Eigen::Matrix<T, Eigen::Dynamic, 1>;
@@ -98,7 +98,7 @@ struct NetworkShape {
   double ForceUnit(double mass) const {
     return kNetworkAcceleration * (ldp() ? kReferenceMass : mass);
   }
-  // What the gates' last two columns multiply.
+  // Factors of the gates' last two columns.
   Eigen::Vector2d GateContext(const Eigen::Vector2d& context) const {
     return ldp() ? Eigen::Vector2d::Ones().eval() : context;
   }
@@ -131,13 +131,6 @@ struct NetworkState {
         cell(VectorX<T>::Zero(shape.cells())),
         context((body.mass - kReferenceMass) / kNetworkMass, 1.0) {}
 };
-
-// e: (theta, phi) less the posture.
-template <typename T>
-void SetNetworkInputs(const T& e_theta, const T& e_phi, const Vector4<T>& qd,
-                      NetworkState<T>* state) {
-  SetMotionInputs(e_theta, e_phi, qd, &state->inputs);
-}
 
 template <typename T>
 VectorX<T> Squashed(const VectorX<T>& sum) {

@@ -21,8 +21,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "models/dual.h"
 #include "models/ipm.h"
+#include "models/jet.h"
 #include "models/options.h"
 #include "models/parameters.h"
 
@@ -86,7 +86,8 @@ constexpr std::array<CartDamping, 2> CartDampings(FrictionKind kind) {
   return {CartDamping{"c_x", kMu, kKpX}, CartDamping{"c_y", FrictionAlongY(kind), kKpY}};
 }
 
-// What acts sideways, and what acts forwards as it does (Directions::kIsotropic).
+// A parameter that acts sideways, and the one that acts forwards as it does
+// (Directions::kIsotropic).
 struct SidewaysParameter {
   Parameter sideways, forward;
 };

@@ -58,7 +58,7 @@
 
 namespace pushid {
 
-// What standing and stepping do to a person in one step of the rollout.
+// Effects of standing and stepping on a person in one step of the rollout.
 template <typename T>
 struct StanceForces {
   Horizontal<T> torque;    // N m, of the ankles
@@ -148,7 +148,7 @@ class StanceStep : StanceNumbers {
     }
   }
 
-  // What began within the last step, from what the frame before told and what this one tells.
+  // Completes a lift-off or landing within the last step, from the frame before and this one.
   void Complete() {
     const T since = feet_.swings != 0 ? feet_.clock : feet_.swing_time;
     const T before = RealPart(since) < body_.dt ? T(since * (1.0 / body_.dt)) : T(1.0);

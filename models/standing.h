@@ -1,6 +1,6 @@
 // models: a person whose feet hold, whatever happens: a body that turns about its ankles.
 //
-// What is above the ankles has the mass 0.97 M, its centre of mass at the height h = k l (l: the
+// The body above the ankles has the mass 0.97 M, its centre of mass at the height h = k l (l: the
 // rod, from ankles to hip; k: com_height) and the moment of inertia 1.15 m h^2 about the ankles. It
 // moves like the pendulum of ipm.h that has the same first moment and the same inertia,
 //   rod 1.15 k l,   point mass 0.97 M / 1.15,
@@ -54,7 +54,7 @@ T AngleOverSine(const T& s2) {
   return 1.0 + s2 * (1.0 / 6.0 + s2 * (3.0 / 40.0 + s2 * (5.0 / 112.0 + s2 * (35.0 / 1152.0))));
 }
 
-// What holds the posture, by com_height: N m over the sine of the lean.
+// The torque that holds the posture, by com_height: N m over the sine of the lean.
 inline double HoldPerComHeight(const SelfForce& self) {
   if (self.hold.isZero(0.0)) return 0.0;
   return kGravity * MomentPerComHeight(self.body) / self.rest_direction[2];
@@ -90,7 +90,7 @@ BodyOf<T> TableBody(const Body& body, const ParameterSet<T>& p) {
   return Distributed<T>(body, {p[kCartMassShare], p[kComHeight], p[kGyrationRadius]});
 }
 
-// What holds the posture of a body with the table's masses, less what holds that of its own.
+// The torque that holds a body with the table's masses, less that of its own masses.
 template <typename T>
 Eigen::Matrix<T, 2, 1> HoldOfTable(const SelfForce& self, const ParameterSet<T>& p) {
   const BodyOf<T> body = TableBody(self.body, p);
@@ -105,7 +105,7 @@ BodyOf<T> DynamicBody(const ModelOptions& options, const Body& body, const Param
                       bool holds_fast) {
   if (holds_fast) return StandingBody<T>(body, p[kComHeight]);
   if (options.body == BodyModel::kTable) return TableBody(body, p);
-  return BodyNow<T>(body, T(0.0), T(0.0));
+  return BodyNow<T>(body, T(0.0));
 }
 
 }  // namespace pushid

@@ -131,7 +131,7 @@ class ModelStep : public StepMemory<T> {
       return Acceleration(moving, force.angles, state.qd, total);
     };
     if (this->options_->body == BodyModel::kTable) return free(TableBody(body, p));
-    return this->rod_moves() ? free(BodyNow(body, state.rod, T(0.0))) : free(body);
+    return this->rod_moves() ? free(BodyNow(body, state.rod)) : free(body);
   }
 
   // The pendulum under qdd, the feet and, where the model has a law for it, the rod.

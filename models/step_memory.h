@@ -48,7 +48,7 @@ class StepMemory {
     }
   }
 
-  // What all others do to one person, and what the person's own network answers: once a frame. Each
+  // Forces of all others on one person, and of the person's own network: once a frame. Each
   // person adds up in canonical order (neighbours.h).
   void Prepare(int person, std::vector<int>* scratch) {
     finder_.Near(person, scratch);
@@ -88,9 +88,7 @@ class StepMemory {
   Vector4<T> network(int person) const {
     return networks_.empty() ? Vector4<T>(Vector4<T>::Zero()) : networks_[person].force;
   }
-  bool rod_moves() const { return !rods_.empty(); }
-  // The layers of the rod's network, which RodVelocityOf filled.
-  const RodLayers<T>& rod(int person) const { return rods_[person]; }
+  bool rod_moves() const { return RodMoves(*options_); }
 
   // dl/dt of a person whose rod moves, m/s.
   T RodVelocityOf(int person, const Vector4<T>& qd_previous) {
@@ -100,9 +98,10 @@ class StepMemory {
     Vector4<T> force = self.Effort(Parameters(person), state, qd_previous);
     if (!networks_.empty()) force += networks_[person].force;
     for (int i = 0; i < 2; ++i) force[2 + i] -= self.hold[i];
-    SetRodInputs<T>(state.q[2] - self.posture[0], state.q[3] - self.posture[1], state.qd, force,
-                    state.rod, self.body, &rods_[person]);
-    return RodVelocity(learned.rod, network_weights_ + learned.rod_at(), &rods_[person]);
+    const VectorX<T> inputs =
+        RodInputs<T>(state.q[2] - self.posture[0], state.q[3] - self.posture[1], state.qd, force,
+                     state.rod, self.body);
+    return RodVelocity(learned.rod, network_weights_ + learned.rod_at(), inputs);
   }
 
  protected:
@@ -131,8 +130,8 @@ class StepMemory {
     if (networks_.empty()) return;
     const PendulumState<T>& state = states_[person];
     const SelfForce& self = self_[person];
-    SetNetworkInputs<T>(state.q[2] - self.posture[0], state.q[3] - self.posture[1], state.qd,
-                        &networks_[person].state);
+    SetMotionInputs<T>(state.q[2] - self.posture[0], state.q[3] - self.posture[1], state.qd,
+                       &networks_[person].state.inputs);
     networks_[person].force = StepNetwork(options_->learned->shape, network_weights_,
                                           self.body.mass, &networks_[person].state);
   }
@@ -143,11 +142,9 @@ class StepMemory {
       for (double weight : learned.weights) own_weights_.push_back(T(weight));
     }
     network_weights_ = weights != nullptr ? weights : own_weights_.data();
+    if (!learned.shape.any()) return;
     for (const SelfForce& self : self_) {
-      if (learned.shape.any()) {
-        networks_.push_back({NetworkState<T>(learned.shape, self.body), Vector4<T>::Zero()});
-      }
-      if (learned.rod.moves()) rods_.emplace_back(learned.rod);
+      networks_.push_back({NetworkState<T>(learned.shape, self.body), Vector4<T>::Zero()});
     }
   }
 
@@ -156,7 +153,6 @@ class StepMemory {
   PairFinder finder_;
   std::vector<Vector4<T>> received_;
   std::vector<Network> networks_;
-  std::vector<RodLayers<T>> rods_;
   std::vector<T> own_weights_;
   const T* network_weights_ = nullptr;
   std::vector<PosedPendulum<T>> states_;

@@ -1,13 +1,13 @@
 // residuals: derivatives that are written out: of a person's own force, of the tail and of the
 // equations of motion, for rollouts in lanes (lanes/person_lanes_loops.h) and for the adjoint of
 // large networks (adjoint/step_adjoint.h). Everything else is differentiated by jets. These stay
-// because they pay: the self force's take a thirtieth of the time that dual numbers need, the
+// because they pay: the self force's take a thirtieth of the time that jets need, the
 // tail's two fifths (tests/benchmarks, Jacobian_OfSelfForce, Jacobian_OfTail); a whole fit of
 // people alone less than half of that of jets (speed.py derivatives).
 // Tests hold them against automatic ones.
 #pragma once
 
-#include "models/dual.h"
+#include "models/jet.h"
 #include "models/push.h"
 #include "models/self_terms.h"
 
@@ -24,30 +24,36 @@ struct SelfJacobian {
   Eigen::Matrix<T, 4, kNumParameters> by_parameter = Eigen::Matrix<T, 4, kNumParameters>::Zero();
 };
 
-// Derivatives of friction, by dual numbers over its own few inputs, so that a law of friction is
-// its formula and its row; flattened, so that they stay in registers. p: by Parameter, of
-// friction's own at least.
+namespace {
+
+// Friction's own parameters as inputs of a jet, by Parameter.
+template <typename Jet>
+struct FrictionInputs {
+  std::array<Jet, kKpX - kMu> own;
+  const Jet& operator[](int id) const { return own[id - kMu]; }
+};
+
+}  // namespace
+
+// Derivatives of friction, by a jet over its own few inputs, so that a law of friction is its
+// formula and its row; flattened, so that they stay in registers. p: by Parameter, of friction's
+// own at least.
 template <typename L, typename Set, typename T>
 [[gnu::flatten]] void AddFrictionJacobian(const SelfTerms<L>& self, const Set& p,
                                           const Vector4<T>& qd, SelfJacobian<T>* jacobian) {
   // By the cart's velocity and by friction's own parameters.
   constexpr int kParameters = kKpX - kMu;
-  using FrictionDual = Dual<T, 2 + kParameters>;
-  struct {
-    std::array<FrictionDual, kParameters> own;
-    const FrictionDual& operator[](int id) const { return own[id - kMu]; }
-  } parameters;
-  Vector4<FrictionDual> velocity;
-  for (int i = 0; i < 2; ++i) velocity[i] = FrictionDual::Input(qd[i], i);
-  for (int i = 0; i < kParameters; ++i) {
-    parameters.own[i] = FrictionDual::Input(p[kMu + i], 2 + i);
-  }
-  const Vector4<FrictionDual> force = self.Friction(parameters, velocity);
+  using Jet = JetOf<T, 2 + kParameters>;
+  FrictionInputs<Jet> parameters;
+  Vector4<Jet> velocity;
+  for (int i = 0; i < 2; ++i) velocity[i] = Jet::Input(qd[i], i);
+  for (int i = 0; i < kParameters; ++i) parameters.own[i] = Jet::Input(p[kMu + i], 2 + i);
+  const Vector4<Jet> force = self.Friction(parameters, velocity);
   for (int row = 0; row < 2; ++row) {
-    jacobian->by_state.row(row).template segment<2>(4) +=
-        force[row].v.template head<2>().transpose();
-    jacobian->by_parameter.row(row).template segment<kParameters>(kMu) =
-        force[row].v.template tail<kParameters>().transpose();
+    for (int i = 0; i < 2; ++i) jacobian->by_state(row, 4 + i) += force[row].Slope(i);
+    for (int i = 0; i < kParameters; ++i) {
+      jacobian->by_parameter(row, kMu + i) = force[row].Slope(2 + i);
+    }
   }
 }
 

@@ -37,7 +37,7 @@ int NormalEquations::PaddedSize(int columns) {
 }
 
 void NormalEquations::Add(int count, const double* rows, const double* residuals) {
-  const VectorKernels& kernels = BestVectorKernels();
+  const VectorKernels& kernels = Widest<VectorKernels>();
   const Eigen::Index padded = information_.cols();
   kernels.add_gram(count, padded, rows, padded, information_.data(), padded);
   kernels.add_rows(count, padded, residuals, rows, padded, gradient_.data());

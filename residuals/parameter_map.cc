@@ -53,8 +53,7 @@ int BlockLayout::WeightColumn() const { return num_weights > 0 ? num_acting() - 
 
 std::vector<ColumnEntry> BlockLayout::Entries(const ParameterMap& map,
                                               const ParameterSet<double>& set, int person) const {
-  std::vector<ColumnEntry> entries =
-      map.Entries(set, -1, CovariatesOf(static_cast<size_t>(person)));
+  std::vector<ColumnEntry> entries = map.Entries(set, CovariatesOf(static_cast<size_t>(person)));
   for (ColumnEntry& entry : entries) {
     const size_t fitted = static_cast<size_t>(entry.column);
     const bool by_unit = num_deviations > 0 && map.fitted[fitted].deviation >= 0;

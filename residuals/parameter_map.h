@@ -21,7 +21,7 @@
 
 namespace pushid {
 
-// What is known of people and shifts their parameters.
+// Facts of people that shift their parameters.
 //
 // A person's parameter is natural(shared + deviation + sum of slope * x), with x the person's value
 // of a covariate:
@@ -46,7 +46,7 @@ struct Covariate {
   }
 };
 
-// What a slope does: it moves `target`, and `also` what has the target's value.
+// The effect of a slope: it moves `target`, and `also` what has the target's value.
 struct CovariateShift {
   Parameter slope, target;
   Transform transform;  // of the target
@@ -54,8 +54,8 @@ struct CovariateShift {
   std::optional<Parameter> also = std::nullopt;
 };
 
-// What pooled parameters may differ by: the unit that a deviation belongs to.
-// The person, or recordings of one label (datasets/manifest/recording.h): setting,
+// The unit by which pooled parameters may differ, to which a deviation belongs: the
+// person, or recordings of one label (datasets/manifest/recording.h): setting,
 // condition, or any other key; the setting of a recording without the label.
 inline constexpr char kSubjectUnit[] = "subject";
 // Whether all people in a recording belong to one unit.
@@ -97,8 +97,8 @@ struct ParameterMap {
     }
   }
 
-  // What the shared value of an index acts through: itself, or the target that a slope moves, `by`
-  // so much of the target's fitted scale.
+  // The parameter that the shared value of an index acts through: itself, or the target that a
+  // slope moves, `by` so much of the target's fitted scale.
   struct Action {
     Parameter parameter;
     Transform transform;
@@ -132,24 +132,16 @@ struct ParameterMap {
     return set;
   }
 
-  // Entries of one person alone whose shared block starts at column 0 and whose unit's block starts
-  // at `deviation_column` (negative: none). x as that of Apply.
-  std::vector<ColumnEntry> Entries(const ParameterSet<double>& set, int deviation_column,
+  // Entries of one person by the shared block. x as that of Apply.
+  std::vector<ColumnEntry> Entries(const ParameterSet<double>& set,
                                    const std::vector<double>* x = nullptr) const {
     std::vector<ColumnEntry> entries;
-    entries.reserve(2 * fitted.size());
     for (size_t i = 0; i < fitted.size(); ++i) {
-      const FittedParameter& f = fitted[i];
+      const int column = static_cast<int>(i);
       const Action a = ActionOf(i, x);
       const double slope = a.by * TransformSlope(a.transform, set[a.parameter]);
-      const auto add = [&](Parameter parameter) {
-        entries.push_back({static_cast<int>(i), parameter, slope});
-        if (deviation_column >= 0 && f.deviation >= 0) {
-          entries.push_back({deviation_column + f.deviation, parameter, slope});
-        }
-      };
-      add(a.parameter);
-      if (a.also) add(*a.also);
+      entries.push_back({column, a.parameter, slope});
+      if (a.also) entries.push_back({column, *a.also, slope});
     }
     return entries;
   }
@@ -183,7 +175,7 @@ struct BlockLayout {
   int num_acting() const;   // parameters, then velocities, then weights
   // First acting column of the initial velocities; negative when they are not fitted.
   int VelocityColumn() const;
-  int WeightColumn() const;  // the same of what is learned
+  int WeightColumn() const;  // first acting column of learned weights
   // Entries of one person, by acting column.
   std::vector<ColumnEntry> Entries(const ParameterMap& map, const ParameterSet<double>& set,
                                    int person) const;

@@ -26,7 +26,7 @@ struct PlatePlace {
   int person = 0, frame = 0;
 };
 
-// What platforms see of a person in all frames of a rollout alike: the body, and where the centre
+// A person as platforms see it in all frames of a rollout alike: the body, and where the centre
 // of pressure is at rest in the start posture.
 template <typename T>
 struct BodyOnPlates {

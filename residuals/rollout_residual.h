@@ -38,6 +38,11 @@
 
 namespace pushid {
 
+inline MeasuredFrame MeasuredAt(const PendulumRecording& r, int frame, int person, bool rod_moves) {
+  return {r.hip[person][frame], r.states[person][frame], r.Weight(person, frame),
+          rod_moves ? r.RodChange(person, frame) : 0.0};
+}
+
 // Everything a rollout residual needs.
 struct RolloutProblem {
   const PendulumRecording* recording = nullptr;  // must outlive the residual
@@ -54,9 +59,7 @@ struct RolloutProblem {
   int num_plate_rows() const;
   std::vector<int> PeopleOnPlates() const;
   MeasuredFrame Measured(int frame, int person) const {
-    return {recording->hip[person][frame], recording->states[person][frame],
-            recording->Weight(person, frame),
-            RodMoves(options) ? recording->RodChange(person, frame) : 0.0};
+    return MeasuredAt(*recording, frame, person, RodMoves(options));
   }
 };
 
@@ -102,10 +105,10 @@ struct RolloutResidual {
         const PendulumState<T>& state = path.At(t, n);
         const Body& body = scene.people[n].body;
         Eigen::Map<FrameVector<T>> r(residuals);
-        r = T(p.weight) * (RodMoves(p.options)
-                               ? FrameResidual<T>(BodyNow(body, state.rod, parameters[n][kRodLift]),
-                                                  state, p.Measured(t, n), p.sigmas)
-                               : FrameResidual<T>(body, state, p.Measured(t, n), p.sigmas));
+        r = T(p.weight) *
+            (RodMoves(p.options)
+                 ? FrameResidual<T>(BodyNow(body, state.rod), state, p.Measured(t, n), p.sigmas)
+                 : FrameResidual<T>(body, state, p.Measured(t, n), p.sigmas));
       }
     }
     const std::vector<int> on_plates = p.PeopleOnPlates();
@@ -124,11 +127,11 @@ struct RolloutResidual {
   }
 };
 
-// What a rollout is run with at a point, and by which columns it is differentiated.
+// Inputs of a rollout at a point, and the columns by which it is differentiated.
 struct SensitivityInputs {
   std::vector<ParameterSet<double>> parameters;   // one entry per person
-  std::vector<Vector4<double>> initial_velocity;  // the same
-  std::vector<std::vector<ColumnEntry>> entries;  // the same
+  std::vector<Vector4<double>> initial_velocity;  // likewise
+  std::vector<std::vector<ColumnEntry>> entries;  // likewise
   int num_columns = 0;                      // NormalEquations::PaddedSize; zero beyond the last
   int velocity_column = -1;                 // first of 4 * people columns; negative when not fitted
   const double* network_weights = nullptr;  // all of options.learned, instead of its own
@@ -146,7 +149,7 @@ RolloutStatus RollOut(const RolloutProblem& problem, double const* const* blocks
 bool RolloutResiduals(const RolloutProblem& problem, double const* const* blocks,
                       double* residuals);
 
-// What a problem is made of.
+// Parts of a problem.
 
 // The unit of each person, by which pooled parameters differ.
 std::vector<std::string> PoolingUnits(const PendulumRecording& recording,

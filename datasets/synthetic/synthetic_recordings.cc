@@ -29,17 +29,17 @@ struct Subject {
 // known seed would change.
 constexpr int kSpreadDraws = 35;
 
-// Whether a parameter is spread: not delays, bodies and dry friction, nor the rod's lift and what
-// is behind it.
+// Whether a parameter is spread: not delays, bodies and dry friction, nor feet that step and what
+// is behind them.
 constexpr bool IsSpread(int id) {
-  return id < kRodLift && id != kCoulombFriction && (id < kReactionDelay || id > kPushGain);
+  return id < kSupportFront && id != kCoulombFriction && (id < kReactionDelay || id > kPushGain);
 }
 
 ParameterSet<double> Spread(ParameterSet<double> parameters, double sigma, Random* random) {
   constexpr int kNotSpread = 2 + kPushGain - kReactionDelay;
-  static_assert(kRodLift - kNotSpread <= kSpreadDraws);
+  static_assert(kSupportFront - kNotSpread <= kSpreadDraws);
   int draws = 0;
-  for (int i = 0; i < kRodLift; ++i) {
+  for (int i = 0; i < kSupportFront; ++i) {
     if (!IsSpread(i)) continue;
     parameters[i] *= std::exp(sigma * random->Normal());
     ++draws;
@@ -120,7 +120,7 @@ RecordedPerson ObservePerson(const SyntheticOptions& options, const SyntheticRec
   for (int t = 0; t < options.frames; ++t) {
     const PendulumState<double>& state = made.path.At(t, n);
     const Vector4<double>& q = state.q;
-    const Body body = BodyNow(made.scene.people[n].body, state.rod, made.parameters[n][kRodLift]);
+    const Body body = BodyNow(made.scene.people[n].body, state.rod);
     const double sigma = t == 0 && !options.noise_at_first_frame ? 0.0 : options.joint_noise_m;
     const Vector4<double>& start = made.path.At(0, n).q;
     const auto observed = [&](const Vector3<double>& position) {

@@ -142,7 +142,7 @@ void FollowPrediction(const Prediction& prediction, std::vector<RestorationInput
   for (int n = 0; n < static_cast<int>(people->size()); ++n) {
     RestorationInput& person = (*people)[n];
     for (int t = 0; t < prediction.path.num_frames(); ++t) {
-      person.Follow(prediction.path.At(t, n), prediction.rod_moves, prediction.Lift(n));
+      person.Follow(prediction.path.At(t, n), prediction.rod_moves);
     }
     if (prediction.feet_step) person.feet = FeetOf(prediction.path, n);
   }

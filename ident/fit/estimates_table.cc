@@ -135,7 +135,7 @@ constexpr double kHeldByDemand = 0.9;  // share of what determines a parameter
 
 void AddVerdict(const FitResult& result, Warnings* warnings) {
   const ModelOptions& model = result.options.model;
-  const Verdict verdict = VerdictOf(result.behaviour, model);
+  const Verdict verdict = VerdictOf(result.behaviour);
   if (verdict == Verdict::kSettles) return;
   const bool slow = verdict == Verdict::kSlowToSettle;
   // Holding it harder was tried, and dropped.

@@ -149,7 +149,7 @@ std::string OutcomeLegend() {
 
 std::vector<ForcePart> ActingParts(const FormationRun& run) {
   std::vector<ForcePart> acting;
-  for (ForcePart part : kForceParts) {
+  for (const auto& [name, part] : kForceParts) {
     bool acts = false;
     for (int t = 0; t < run.num_frames() && !acts; ++t) {
       for (int n = 0; n < run.num_people(); ++n) {

@@ -59,9 +59,8 @@ HipPaths HipsOfRollout(const IdentifiedModel& model, const PendulumRecording& re
     hips.emplace_back();
     for (int t = 0; t < frames; ++t) {
       const PendulumState<double>& state = path.At(t, n);
-      hips[n].push_back(HipPosition(
-          RodMoves(model.options) ? BodyNow(body, state.rod, parameters[n][kRodLift]) : body,
-          state.q));
+      hips[n].push_back(
+          HipPosition(RodMoves(model.options) ? BodyNow(body, state.rod) : body, state.q));
     }
   }
   return hips;

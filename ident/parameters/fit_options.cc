@@ -136,14 +136,12 @@ std::string SelfForceText(SelfForceKind kind, const LearnedTerms* network) {
 
 Result<RodShape> ParseRod(const std::string& flag, const std::string& text) {
   if (text == "constant") return RodShape{};
-  if (text == "linear") return RodShape{RodKind::kLinear, {}};
   const size_t colon = text.find(':');
   RodShape shape{FromName<RodKind>(text.substr(0, colon)).value_or(RodKind::kConstant)};
-  const std::string usual = shape.biased() ? kLdpRod : std::to_string(kDefaultHidden);
-  shape.hidden = HiddenSizes(colon == std::string::npos ? usual : text.substr(colon + 1));
-  if (shape.layered() && !shape.hidden.empty()) return shape;
+  shape.hidden = HiddenSizes(colon == std::string::npos ? kLdpRod : text.substr(colon + 1));
+  if (shape.moves() && !shape.hidden.empty()) return shape;
   return Error{flag + " is '" + text +
-               "'; it must be constant, linear, mlp:4 or, as LDP's, ldp:128-128" + LayersHelp()};
+               "'; it must be constant or, as LDP's, ldp:128-128" + LayersHelp()};
 }
 
 Result<InteractionChoice> ParseInteraction(const std::string& flag, const std::string& text) {
@@ -218,7 +216,7 @@ std::vector<double> InitialWeights(const NetworkShape& shape, uint64_t seed) {
 std::shared_ptr<const LearnedTerms> InitialNetwork(const NetworkShape& shape, uint64_t seed,
                                                    const RodShape& rod, const PairShape& pair) {
   LearnedTerms network{shape, InitialWeights(shape, seed), rod, pair};
-  AddHiddenWeights(rod.hidden, rod.num_inputs(), seed + kRodSeed, &network.weights);
+  AddHiddenWeights(rod.hidden, RodShape::kInputs, seed + kRodSeed, &network.weights);
   network.weights.resize(network.pair_at(), 0.0);
   AddHiddenWeights(pair.hidden, PairShape::kInputs, seed + kPairSeed, &network.weights);
   network.weights.resize(network.num_weights(), 0.0);
@@ -306,11 +304,12 @@ constexpr std::pair<const char*, double> kRetiredOptions[] = {{"stability_weight
                                                               {"ensemble", 1.0},
                                                               {"body_weight", 0.0},
                                                               {"mode_margin_per_s", 0.2}};
-// Parameters of earlier versions, of terms that `interaction` or `process_noise` would name.
+// Parameters of earlier versions, of terms that `interaction`, `process_noise` or the rod's law
+// would name.
 constexpr const char* kRetiredParameters[] = {"drive_gain",  "drive_torque",  "drive_time",
                                               "noise_y_x",   "noise_theta_x", "noise_theta_y",
                                               "noise_phi_x", "noise_phi_y",   "noise_phi_theta",
-                                              "noise_speed", "noise_push"};
+                                              "noise_speed", "noise_push",    "rod_lift"};
 
 // One row of the table, which names other rows.
 void RowFields(JsonArchive& a, ParameterSpec& spec, const ParameterTable& table) {

@@ -3,10 +3,10 @@
 //
 //   mlp:4                           kind and hidden size (4 where it is left out)
 //   ldp:256:32                      LDP's, with biases, the mass and an embedding
-//   constant, linear, mlp:4, ldp:128-128                          a law of the rod
+//   constant, ldp:128-128                                         a law of the rod
 //   network:8-8, ldp_network:512-512, among the terms of an interaction    hidden sizes
 // JSON: {"kind": "mlp", "hidden": 8, "embedding": 0,
-//        "rod": {"kind": "mlp", "hidden": [4]}, "interaction": {"hidden": [4], "ldp": false},
+//        "rod": {"kind": "ldp", "hidden": [4]}, "interaction": {"hidden": [4], "ldp": false},
 //        "weights": [...]}
 // weights: the flat array of models/learned_terms.h, without loss. Kind none, and no interaction,
 // where those are not learned.
@@ -50,7 +50,7 @@ struct InteractionChoice {
 Result<InteractionChoice> ParseInteraction(const std::string& flag, const std::string& text);
 std::string InteractionText(const ModelOptions& options);
 
-// "mlp:4", "rod linear", "mlp:4 and rod mlp:4", "interaction network:4".
+// "mlp:4", "rod ldp:4", "mlp:4 and rod ldp:4", "interaction network:4".
 std::string LearnedName(const LearnedTerms& network);
 
 // Random hidden weights (variance 1 / inputs of the unit) and no output: no force and a rod that

@@ -256,16 +256,10 @@ MaybeError SetInteraction(const std::string& flag, const std::string& text, FitO
   return std::nullopt;
 }
 
-std::string SelfForceHelp() {
-  std::string text = "additional self force: none, ";
-  for (const SelfForceLaw& law : kSelfForces) {
-    if (law.value == SelfForceKind::kNone) continue;
-    text += law.name + (" (" + std::string(law.note)) + "), ";
-  }
-  return text +
-         "a network by kind and hidden size (mlp:4, or LDP's ldp:256:32 with its embedding), or "
-         "linear and a network, comma-separated";
-}
+constexpr const char* kSelfForceHelp =
+    "additional self force: none, linear (cross terms, quadratic), a network by kind and hidden "
+    "size (mlp:4, or LDP's ldp:256:32 with its embedding), or linear and a network, "
+    "comma-separated";
 
 std::vector<Row> ModelRows() {
   using O = FitOptions;
@@ -273,12 +267,11 @@ std::vector<Row> ModelRows() {
       PresetRow(),
       StanceRow(),
       Decided(LearnedRow(
-          "self_force", "/self_force", SelfForceHelp().c_str(), SetSelfForce,
+          "self_force", "/self_force", kSelfForceHelp, SetSelfForce,
           [](const FitOptions& o) { return SelfForceText(o.self_force, o.model.learned.get()); })),
       LearnedRow("rod", "",
-                 "the rod's length: constant, or a state that a learned law changes, together "
-                 "with the cart's height: linear, mlp:4 (hidden sizes); or LDP's, whose cart "
-                 "keeps its height, ldp:128-128",
+                 "the rod's length: constant, or a state that LDP's learned law changes, "
+                 "ldp:128-128 (hidden sizes)",
                  SetRod, [](const FitOptions& o) { return RodName(Learned(o).rod); }),
       Decided(FieldRow<Posture>("posture", "/posture", &ModelOptions::posture,
                                 "balance error measured from: upright or initial")),

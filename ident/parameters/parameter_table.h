@@ -49,24 +49,13 @@ struct ParameterSpec {
 };
 
 // The law of self forces that is fitted beyond balance, friction and the preset's own
-// (PUSHID_SELF_FORCES).
-#define PUSHID_LAW(id, ...) id,
-enum class SelfForceKind { kNone, PUSHID_SELF_FORCES(PUSHID_LAW) };
-#undef PUSHID_LAW
-
-struct SelfForceLaw {
-  const char* name;
-  SelfForceKind value;
-  int first, last;  // its parameters; none where last is less
-  const char* note;
-};
-inline constexpr SelfForceLaw kSelfForces[] = {{"none", SelfForceKind::kNone, 0, -1, ""},
-#define PUSHID_LAW(id, name, ...) {name, SelfForceKind::id, __VA_ARGS__},
-                                               PUSHID_SELF_FORCES(PUSHID_LAW)
-#undef PUSHID_LAW
-};
-static_assert(RowsAreInOrder(kSelfForces));
-constexpr const auto& Names(SelfForceKind) { return kSelfForces; }
+// (models/self_terms.h). Its parameters are zero where it does not act, and are freed where it
+// does.
+enum class SelfForceKind { kNone, kLinear };
+constexpr EnumNames<SelfForceKind, 2> Names(SelfForceKind) {
+  return {{{"none", SelfForceKind::kNone}, {"linear", SelfForceKind::kLinear}}};
+}
+inline constexpr int kFirstLinear = kAx, kLastLinear = kDq;
 
 struct ParameterTable {
   std::vector<ParameterSpec> specs;  // indexed by Parameter, a user's own at the end

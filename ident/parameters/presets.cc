@@ -171,7 +171,8 @@ const NamedPreset* FindPreset(const std::string& name) {
 }
 
 void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
-  for (int id = RowOf(kind).first; id <= RowOf(kind).last; ++id) {
+  if (kind == SelfForceKind::kNone) return;
+  for (int id = kFirstLinear; id <= kLastLinear; ++id) {
     ParameterSpec& spec = table->specs[id];
     spec.free = true;
     // As weak as the preset's own priors: without them these terms drive the person instead.
@@ -181,8 +182,7 @@ void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
 
 // With weak priors as wide as their centres. The contact's height stays fixed: heights from the
 // ankles to the chest fit the group recordings alike. So do the parameters of LDP's discrete form:
-// it has no derivatives. The cart's lift is freed with the rod's law: a rod that is learned while
-// the cart stays low predicts the hip worse than a constant one.
+// it has no derivatives.
 void FreeByTerm(const ModelOptions& model, ParameterTable* table) {
   for (ParameterSpec& spec : table->specs) {
     if (!FreedByItsTerm(spec.id, model)) continue;
@@ -343,8 +343,6 @@ Result<FitOptions> MakePreset(const std::string& name) {
 void FreeTerms(FitOptions* o) {
   FreeSelfForce(o->self_force, &o->table);
   FreeByTerm(o->model, &o->table);
-  // Beside LDP's law of the rod the cart keeps its height.
-  if (RodMoves(o->model) && !RodMovesCart(o->model)) o->table[kRodLift].nominal = 0.0;
   FreeNoise(o);
   for (ParameterSpec& spec : o->table.specs) {
     if (!o->preset_priors) spec.prior.reset();

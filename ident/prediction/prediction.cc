@@ -66,7 +66,6 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
   prediction.parts = ReportedParts(model.options);
   prediction.rod_moves = RodMoves(model.options);
   prediction.feet_step = model.options.stance == Stance::kSteps;
-  for (const ParameterSet<double>& own : parameters) prediction.rod_lift.push_back(own[kRodLift]);
   prediction.status = RolloutInOwnAxes(recording, model.options, parameters, frames,
                                        &prediction.path, &prediction.forces);
   if (!prediction.status.ok) return prediction;

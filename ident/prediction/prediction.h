@@ -32,8 +32,7 @@ struct Prediction {
   std::vector<ForcePart> parts;                   // parts that reports list
   std::vector<std::vector<Vector3<double>>> hip;  // [person][frame], m; empty after a failure
   bool rod_moves = false;
-  std::vector<double> rod_lift;  // of each person, or one for everybody
-  bool feet_step = false;        // the path has feet that step
+  bool feet_step = false;  // the path has feet that step
   // One value per person; empty after a failure and where the model has no step probability.
   std::vector<PredictedStep> steps;
   // Number of first frames that were seen (online_predictor.h), frame 0 among them, and a band for
@@ -41,11 +40,10 @@ struct Prediction {
   int observed = 0;
   std::vector<HipBand> bands;
 
-  double Lift(int person) const { return rod_lift[rod_lift.size() == 1 ? 0 : person]; }
-  // A person with the rod and the cart's height of one frame.
+  // A person with the rod of one frame.
   Body BodyAt(const Scene& scene, int frame, int person) const {
     const Body& body = scene.people[person].body;
-    return rod_moves ? BodyNow(body, path.At(frame, person).rod, Lift(person)) : body;
+    return rod_moves ? BodyNow(body, path.At(frame, person).rod) : body;
   }
 };
 

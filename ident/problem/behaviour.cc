@@ -13,8 +13,8 @@
 #include "models/decompositions.h"
 #include "models/enum_names.h"
 #include "models/learned_terms.h"
-#include "models/modal_stability.h"
 #include "models/reaction_delay.h"
+#include "models/rollout.h"
 #include "models/self_terms.h"
 #include "residuals/cost_functions/rest_residual.h"
 
@@ -90,39 +90,23 @@ double SecondsUntilStill(const std::vector<Scene>& scenes, const ModelOptions& o
   return (last_moving - end) * dt;
 }
 
-// The free state about rest: [theta, phi, qd], the cart's velocity one step earlier (of which the
-// cart's derivative is made), and the rod's length. LDP's networks, which remember, have no rest.
-constexpr int kPreviousAt = 6, kRodAt = 8, kFreeState = 9;
+// The free state about rest: [theta, phi, qd], and the cart's velocity one step earlier (of which
+// the cart's derivative is made). LDP's networks, which remember, have no rest.
+constexpr int kPreviousAt = 6, kFreeState = 8;
 
-// One step of the learned terms about rest, by central differences (it is smooth, and its values
-// are of order one): d[force; rod's velocity]/d(free state).
-Eigen::MatrixXd LearnedStep(const LearnedTerms& network, const SelfForce& self,
-                            const ParameterSet<double>& parameters) {
+// The learned self force about rest, by central differences (it is smooth, and its values are of
+// order one): d[force]/d(free state).
+Eigen::MatrixXd LearnedForce(const LearnedTerms& network, const SelfForce& self) {
   constexpr double kDifference = 1e-5;
-  const NetworkShape& shape = network.shape;
-  const auto step = [&](const Eigen::VectorXd& from) {
-    const Vector4<double> qd = from.segment<4>(2);
-    Eigen::VectorXd to = Eigen::VectorXd::Zero(5);
-    if (shape.any()) {
-      NetworkState<double> memory(shape, self.body);
-      SetNetworkInputs<double>(from[0], from[1], qd, &memory);
-      to.head<4>() = StepNetwork(shape, network.weights.data(), self.body.mass, &memory);
-    }
-    if (network.rod.moves()) {
-      const PendulumState<double> state{{0.0, 0.0, from[0], from[1]}, qd, from[kRodAt]};
-      const Vector4<double> before{from[kPreviousAt], from[kPreviousAt + 1], 0.0, 0.0};
-      RodLayers<double> layers(network.rod);
-      SetRodInputs<double>(from[0], from[1], qd,
-                           self.Effort(parameters, state, before) + to.head<4>(), state.rod,
-                           self.body, &layers);
-      to[4] = RodVelocity(network.rod, network.weights.data() + network.rod_at(), &layers);
-    }
-    return to;
+  const auto force = [&](const Eigen::VectorXd& from) {
+    NetworkState<double> memory(network.shape, self.body);
+    SetMotionInputs<double>(from[0], from[1], from.segment<4>(2), &memory.inputs);
+    return StepNetwork(network.shape, network.weights.data(), self.body.mass, &memory);
   };
-  Eigen::MatrixXd jacobian(5, kFreeState);
+  Eigen::MatrixXd jacobian(4, kFreeState);
   for (int i = 0; i < kFreeState; ++i) {
     const Eigen::VectorXd move = kDifference * Eigen::VectorXd::Unit(kFreeState, i);
-    jacobian.col(i) = (step(move) - step(-move)) / (2.0 * kDifference);
+    jacobian.col(i) = (force(move) - force(-move)) / (2.0 * kDifference);
   }
   return jacobian;
 }
@@ -185,11 +169,11 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
   const Eigen::Matrix4d inverse =
       InverseMassMatrix<double>(at_rest, Angles<double>(), at_rest.mass + scene.dt * rest.ground);
   for (int i = 0; i < 2; ++i) rest.by_state(i, 2 + i) -= rest.ground;
-  Eigen::MatrixXd learned = Eigen::MatrixXd::Zero(5, kFreeState);
+  Eigen::MatrixXd learned = Eigen::MatrixXd::Zero(4, kFreeState);
   const auto& network = options.learned;
   // LDP's networks have no rest: their simulations tell.
-  if (network != nullptr && !network->shape.ldp() && !network->rod.biased()) {
-    learned = LearnedStep(*options.learned, self, parameters);
+  if (network != nullptr && !network->shape.ldp() && !network->rod.moves()) {
+    learned = LearnedForce(*network, self);
   }
   std::optional<LateVelocity> of_past;
   if (late) of_past.emplace(options, parameters, self, scene.dt * inverse, scene.dt);
@@ -201,7 +185,7 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
   velocity.leftCols<6>() += scene.dt * inverse * rest.by_state;
   velocity.middleCols<2>(kPreviousAt) +=
       scene.dt * inverse.leftCols<2>() * rest.by_previous.asDiagonal();
-  velocity.leftCols(known) += scene.dt * inverse * learned.topRows<4>();
+  velocity.leftCols(known) += scene.dt * inverse * learned;
   if (late) {
     velocity.leftCols<6>() += of_past->by_now;
     velocity.rightCols(past) += of_past->by_past;
@@ -211,11 +195,6 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
   step.topLeftCorner<2, 2>().setIdentity();
   step.topRows<2>() += scene.dt * velocity.bottomRows<2>();
   step.block<2, 2>(kPreviousAt, 2).setIdentity();
-  // A law that is switched off leaves the rod where it is, which tells nothing of the person.
-  if (!learned.row(4).isZero(0.0)) {
-    step.row(kRodAt).head(known) = scene.dt * learned.row(4);
-    step(kRodAt, kRodAt) += 1.0;
-  }
   return std::log(SpectralRadius(step)) / scene.dt;
 }
 
@@ -306,13 +285,13 @@ std::string GrowthText(const Behaviour& behaviour) {
 
 }  // namespace
 
-Verdict VerdictOf(const Behaviour& behaviour, const ModelOptions& options) {
+Verdict VerdictOf(const Behaviour& behaviour) {
   if (!behaviour.settles) {
     return behaviour.self_propelling ? Verdict::kSelfPropelling : Verdict::kSlowToSettle;
   }
   if (!behaviour.self_propelling) return Verdict::kSettles;
   if (!behaviour.unstable()) return Verdict::kNegativeDrag;
-  return RodMoves(options) ? Verdict::kRodRunsAway : Verdict::kUnstableThoughSettled;
+  return Verdict::kUnstableThoughSettled;
 }
 
 std::string VerdictName(Verdict verdict) {
@@ -336,9 +315,6 @@ std::string VerdictSentence(Verdict verdict, const Behaviour& behaviour,
                                             : "the fitted forces drive the person after a push";
     case Verdict::kUnstableThoughSettled:
       return stands + ", but is unstable at rest: the slightest deviation grows at " +
-             GrowthText(behaviour);
-    case Verdict::kRodRunsAway:
-      return stands + ", but the rod, or the person with it, diverges from rest at " +
              GrowthText(behaviour);
     case Verdict::kNegativeDrag:
       return settles +
@@ -371,8 +347,6 @@ std::string VerdictRemedy(Verdict verdict, const ModelOptions& options) {
       return LearnsAlone(options) ? "a smaller --network_prior stabilizes it"
                                   : "priors nearer to a person who stands stabilize it, as "
                                     "--prior=Kp_theta:2000:300, or --self_force=none";
-    case Verdict::kRodRunsAway:
-      return "a smaller --network_prior or --rod=constant stabilizes it";
     case Verdict::kNegativeDrag:
       return "--fix=mu=0 shows how much accuracy is lost without it";
   }

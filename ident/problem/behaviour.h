@@ -82,10 +82,9 @@ enum class Verdict {
   kSlowToSettle,           // not driven, but not at rest when it is judged
   kSelfPropelling,         // does not settle, and the fitted forces are why
   kUnstableThoughSettled,  // settles in the simulations, yet a free mode at rest grows
-  kRodRunsAway,            // the same, with a rod that moves
   kNegativeDrag            // settles and is stable, yet c_x is below zero
 };
-Verdict VerdictOf(const Behaviour& behaviour, const ModelOptions& options);
+Verdict VerdictOf(const Behaviour& behaviour);
 
 // "slow to settle", "self-propelling"; empty where the person settles.
 std::string VerdictName(Verdict verdict);

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "models/decompositions.h"
-#include "models/modal_stability.h"
+#include "models/rollout.h"
 
 namespace pushid {
 namespace {

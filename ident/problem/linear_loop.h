@@ -1,7 +1,7 @@
 // ident: a person at rest as a control engineer sees them: transfer functions in closed form, and
 // the margins of the loop.
 //
-// About rest (modal_stability.h) the planes (x, theta) and (y, phi) are separate. With X the cart's
+// About rest (models/rollout.h) the planes (x, theta) and (y, phi) are separate. With X the cart's
 // place and E the angle's deviation, both as the ground sees them, and s = j omega,
 //   (M s^2 - J(s)) [X; E] = U,   J(s) = J_now + J_ankle exp(-s d) + J_step exp(-s d_step)
 // where J are the derivatives of the forces less gravity by what is felt at once (passive stiffness

@@ -107,7 +107,7 @@ std::vector<RowBlock> RowBlocksOf(const BuiltProblem& built, bool robust) {
     RowBlock block{from.cluster, {}, std::vector<PersonRows>(1), {}};
     const bool told = rollout == nullptr ? EvaluateOwnRows(*from.cost, at, &block.people[0])
                       : rollout->in_lanes() != nullptr
-                          ? rollout->FillPeople(sums[from.cluster], robust, &block.people)
+                          ? rollout->FillPeople({sums[from.cluster]}, robust, &block.people)
                           : rollout->EvaluatePeople(at.data(), robust, &block.people);
     if (!told) continue;
     block.num_rows = rollout != nullptr ? rollout->num_rows() : from.cost->num_residuals();

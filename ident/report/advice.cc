@@ -73,11 +73,6 @@ class Adviser {
 
   void Identifiability() {
     for (const NullDirection& n : result_.uncertainty.null_directions) {
-      if (n.parameters == std::vector<std::string>{"rod_lift"}) {
-        Add("The length law of the rod has no effect; leave it out.",
-            Same().Set("rod", "constant"));
-        continue;
-      }
       Add("Not identifiable: " + n.sentence + ". Fix one of them.",
           Same().Append("fix", n.parameters.back()));
     }
@@ -137,7 +132,7 @@ class Adviser {
   void Person() {
     const FitOptions& o = result_.options;
     if (o.likelihood != Likelihood::kTrajectory || IsLarge(o)) return;  // nothing holds them
-    const Verdict verdict = VerdictOf(result_.behaviour, o.model);
+    const Verdict verdict = VerdictOf(result_.behaviour);
     const std::string sentence = Capitalized(VerdictSentence(verdict, result_.behaviour, o.model));
     const bool tail = o.model.push_tail == PushTail::kExponential;
     switch (verdict) {
@@ -147,9 +142,6 @@ class Adviser {
         if (result_.uncertainty.settling.dropped()) return;  // it was held, and let go
         return Add(sentence + "; check the cost of a stronger settling constraint.",
                    SettleHarder(kSomeSettling));
-      case Verdict::kRodRunsAway:
-        return Add(sentence + "; check how much accuracy is lost with a constant rod.",
-                   Same().Set("rod", "constant"));
       case Verdict::kSelfPropelling:
         if (result_.uncertainty.settling.dropped()) return;
         if (tail) {

@@ -144,7 +144,7 @@ std::string GainsText(const FitResult& result) {
 }
 
 std::string BalanceText(const FitResult& result) {
-  const Verdict verdict = VerdictOf(result.behaviour, result.options.model);
+  const Verdict verdict = VerdictOf(result.behaviour);
   if (verdict == Verdict::kSettles) return "";
   return Capitalized(VerdictSentence(verdict, result.behaviour, result.options.model)) +
          (result.behaviour.self_propelling ? ": do not use the gains." : ".");

@@ -22,7 +22,7 @@ std::string FirstSentences(const FitResult& result, bool brief = false);
 // in BuildReport of page/build_report.h.
 Screen ScreenOf(const FittedModel& model);
 
-// The learned terms: "rod mlp:2 (26 weights, prior 1)"; empty where nothing is learned.
+// The learned terms: "rod ldp:2 (29 weights, prior 1)"; empty where nothing is learned.
 std::string NetworkText(const FitResult& result);
 
 // -2 log likelihood, AIC, BIC and what they may be compared with; result.likelihood must be there.

@@ -279,7 +279,7 @@ std::string WhyNoneIsIdentified(const Uncertainty& uncertainty, const Behaviour&
     return "there is one recording, so that errors between people and between recordings are "
            "unknown; intervals are those of the posterior, priors included";
   }
-  const Verdict verdict = VerdictOf(behaviour, model);
+  const Verdict verdict = VerdictOf(behaviour);
   if (verdict != Verdict::kSettles && verdict != Verdict::kSlowToSettle) {
     return VerdictSentence(verdict, behaviour, model);
   }

@@ -91,10 +91,10 @@ struct RestorationInput {
     return {body.mass, lengths[frame][0], lengths[frame][1]};
   }
   // One frame more of a rollout's path; lift: of the cart (BodyNow).
-  void Follow(const PendulumState<double>& state, bool rod_moves, double lift) {
+  void Follow(const PendulumState<double>& state, bool rod_moves) {
     q.push_back(state.q);
     if (!rod_moves) return;
-    const Body now = BodyNow(body, state.rod, lift);
+    const Body now = BodyNow(body, state.rod);
     lengths.emplace_back(now.rod_length, now.cart_height);
   }
   // The last frame that was seen.

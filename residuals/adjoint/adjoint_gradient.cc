@@ -77,7 +77,7 @@ void AddToBoth(const PairAdjoint& by_states, int n, int j, MatrixXd* by_state) {
   by_state->col(j) += by_states.tail<8>();
 }
 
-// What people of several recordings do to each other, step by step, and back.
+// Forces between people of several recordings, step by step, and back.
 //
 // With f the adjoint of what each of two people gets from the other, F = F_terms + 2 M g y of both,
 //   L_s <- L_s + (dF_terms/ds)' f + (dg/ds)' (2 M y . f) + (du/ds)' u^,   s: the states of both
@@ -103,7 +103,9 @@ class TouchingPeople {
       groups_.push_back({scene, first, PairFinder(*scene, options.interaction)});
       first += scene->num_people();
     }
-    if (options.interaction.learned) network_.emplace(options.learned->pair);
+    if (!options.interaction.learned) return;
+    const PairShape& shape = options.learned->pair;
+    network_.emplace(PairShape::kInputs, shape.hidden, 4, shape.ldp);
   }
 
   // Before the first step; weights: of all that is learned, there until the last step back; null
@@ -191,14 +193,12 @@ class TouchingPeople {
     const auto asked = std::count_if(contacts->begin(), contacts->end(),
                                      [](const Contact& c) { return c.learned(); });
     inputs_.resize(PairShape::kInputs, 2 * asked);
-    VectorX<double> u;
     int column = 0;
     for (const Contact& c : *contacts) {
       if (!c.learned()) continue;
-      for (const auto& [own, other] : {std::pair(c.n, c.j), std::pair(c.j, c.n)}) {
-        SetPairInputs(now.states[own], now.states[other], &u);
-        inputs_.col(column++) = u;
-      }
+      const PendulumState<double>&n = now.states[c.n], &j = now.states[c.j];
+      inputs_.col(column++) = PairInputs(n, j);
+      inputs_.col(column++) = PairInputs(j, n);
     }
     network_->Forward(inputs_, &outputs_);
     const PairShape& shape = options_.learned->pair;
@@ -266,7 +266,7 @@ class AdjointGradient::Batch {
     }
     const LearnedTerms& network = *options_.learned;
     if (network.shape.any()) network_.emplace(network.shape, columns_, masses);
-    if (network.rod.moves()) rod_.emplace(network.rod);
+    if (network.rod.moves()) rod_.emplace(RodShape::kInputs, network.rod.hidden, 1, true);
     if (options_.interaction.Any()) others_.emplace(options_, scenes);
     now_.states.resize(walkers_.size());
   }
@@ -299,19 +299,18 @@ class AdjointGradient::Batch {
   void Backward(ParameterSet<double>* by_parameter, double* by_weight) {
     std::vector<StateAdjoint> adjoints(walkers_.size());  // of the frame after the step
     for (int step = columns_.num_steps() - 1; step >= 0; --step) {
-      RodBack(step, &adjoints, by_parameter);
+      RodBack(step, &adjoints);
       const int people = columns_.active(step);
       forces_.setZero(4, people);
       received_.setZero(4, static_cast<Eigen::Index>(walkers_.size()));
       Eigen::VectorXd by_rod;
-      for (int column = 0; column < people; ++column) {
-        if (!Going(walkers_[column], step)) continue;
+      ForEachGoing(step, [&](int column, Walker&) {
         if (rod_) by_rod = rod_inputs_.col(column);
         const ForceAdjoint by_force =
             StepBack(column, step, rod_ ? &by_rod : nullptr, &adjoints[column], by_parameter);
         forces_.col(column) = by_force.network;
         received_.col(column) = by_force.received;
-      }
+      });
       ForcesBack(step, &adjoints, by_parameter);
     }
     if (by_weight == nullptr) return;
@@ -342,38 +341,37 @@ class AdjointGradient::Batch {
     const Vector4<double>& VelocityBefore(int frame) const {
       return path[frame > 0 ? frame - 1 : 0].qd;
     }
-    MeasuredFrame Measured(int frame, bool rod_moves) const {
-      return {recording->hip[person][frame], recording->states[person][frame],
-              recording->Weight(person, frame),
-              rod_moves ? recording->RodChange(person, frame) : 0.0};
-    }
   };
 
-  bool Going(const Walker& walker, int step) const { return step + 1 < end_[walker.place]; }
+  MeasuredFrame Measured(const Walker& walker, int frame) const {
+    return MeasuredAt(*walker.recording, frame, walker.person, rod_.has_value());
+  }
+  // Calls visit(column, walker) for everybody who takes this step.
+  template <typename Visit>
+  void ForEachGoing(int step, const Visit& visit) {
+    for (int column = 0; column < columns_.active(step); ++column) {
+      if (step + 1 < end_[walkers_[column].place]) visit(column, walkers_[column]);
+    }
+  }
   const ParameterSet<double>& Parameters(int column) const { return now_.parameters[column]; }
   void SetStates(int step) {
     if (!others_) return;
-    for (int column = 0; column < columns_.active(step); ++column) {
-      const Walker& walker = walkers_[column];
-      if (Going(walker, step)) now_.states[column] = walker.path[step];
-    }
+    ForEachGoing(step, [&](int column, Walker& w) { now_.states[column] = w.path[step]; });
   }
 
-  // What the networks answer to the states of a step, and what people do to each other there.
+  // Forces of the networks at the states of a step.
   void SetForces(int step) {
     const int people = columns_.active(step);
     forces_.setZero(4, people);
     if (!network_) return;
     VectorX<double> u(kMotionInputs);
     inputs_.setZero(kMotionInputs, people);
-    for (int column = 0; column < people; ++column) {
-      const Walker& walker = walkers_[column];
-      if (!Going(walker, step)) continue;
+    ForEachGoing(step, [&](int column, Walker& walker) {
       const PendulumState<double>& state = walker.path[step];
       SetMotionInputs<double>(state.q[2] - walker.self.posture[0],
                               state.q[3] - walker.self.posture[1], state.qd, &u);
       inputs_.col(column) = u;
-    }
+    });
     network_->Forward(step, inputs_, &forces_);
   }
 
@@ -388,29 +386,24 @@ class AdjointGradient::Batch {
     const int people = columns_.active(step);
     rod_velocities_.setZero(1, people);
     if (!rod_) return;
-    RodLayers<double> layers(options_.learned->rod);
-    rod_inputs_.setZero(options_.learned->rod.num_inputs(), people);
-    for (int column = 0; column < people; ++column) {
-      const Walker& walker = walkers_[column];
-      if (!Going(walker, step)) continue;
+    rod_inputs_.setZero(RodShape::kInputs, people);
+    ForEachGoing(step, [&](int column, Walker& walker) {
       const PendulumState<double>& state = walker.path[step];
       Vector4<double> force =
           walker.self.Effort(Parameters(column), state, walker.VelocityBefore(step));
       force += forces_.col(column);
       force.tail<2>() -= walker.self.hold;
-      SetRodInputs<double>(state.q[2] - walker.self.posture[0], state.q[3] - walker.self.posture[1],
-                           state.qd, force, state.rod, walker.body(), &layers);
-      rod_inputs_.col(column) = layers.inputs;
-    }
+      rod_inputs_.col(column) = RodInputs<double>(state.q[2] - walker.self.posture[0],
+                                                  state.q[3] - walker.self.posture[1], state.qd,
+                                                  force, state.rod, walker.body());
+    });
     rod_->Forward(rod_inputs_, &rod_velocities_);
     rod_velocities_ *= kRodSpeed;
   }
 
   void Step(int step, std::vector<RolloutStatus>* status) {
     Vector4<double> received = Vector4<double>::Zero();
-    for (int column = 0; column < columns_.active(step); ++column) {
-      Walker& walker = walkers_[column];
-      if (!Going(walker, step)) continue;
+    ForEachGoing(step, [&](int column, Walker& walker) {
       const PendulumState<double>& state = walker.path[step];
       if (others_) received = received_.col(column);
       const Vector4<double> force =
@@ -418,32 +411,29 @@ class AdjointGradient::Batch {
                              walker.person, step, state, walker.VelocityBefore(step), received,
                              forces_.col(column))
               .Total();
-      walker.acceleration[step] =
-          Acceleration(BodyNow(walker.body(), state.rod, 0.0), state, force);
+      walker.acceleration[step] = Acceleration(BodyNow(walker.body(), state.rod), state, force);
       PendulumState<double>& next = walker.path[step + 1];
       next = pushid::Step(state, walker.acceleration[step], walker.scene().dt);
       next.rod += walker.scene().dt * rod_velocities_(0, column);
       const std::string_view outside = OutsideDomain(walker.body(), next);
-      if (outside.empty()) continue;
+      if (outside.empty()) return;
       (*status)[walker.index] = {false, step + 1, walker.person, outside};
       end_[walker.place] = step + 1;
-      if (!network_) continue;
-      for (int other = 0; other < columns_.active(step); ++other) {
+      for (int other = 0; network_ && other < columns_.active(step); ++other) {
         if (walkers_[other].place == walker.place) network_->Forget(step, other);
       }
-    }
+    });
   }
 
   double Cost() const {
     double cost = 0.0;
     for (size_t column = 0; column < walkers_.size(); ++column) {
       const Walker& walker = walkers_[column];
-      const double lift = now_.parameters[column][kRodLift];
       for (int t = 1; t < end_[walker.place]; ++t) {
         const PendulumState<double>& state = walker.path[t];
         const FrameVector<double> r =
-            walker.weight * FrameResidual<double>(BodyNow(walker.body(), state.rod, lift), state,
-                                                  walker.Measured(t, rod_.has_value()), sigmas_);
+            walker.weight * FrameResidual<double>(BodyNow(walker.body(), state.rod), state,
+                                                  Measured(walker, t), sigmas_);
         cost += 0.5 * r.squaredNorm();
       }
     }
@@ -458,10 +448,11 @@ class AdjointGradient::Batch {
     const PendulumState<double>& state = walker.path[step];
     const double dt = walker.scene().dt;
     const Vector4<double> g = adjoint->state.tail<4>() + dt * adjoint->state.head<4>();
-    const Body body = BodyNow(walker.body(), state.rod, 0.0);
-    const Vector4<double> f = dt * (InverseMassMatrix(body, state.q) * g);
+    const Body body = BodyNow(walker.body(), state.rod);
+    const Vector4<double> f =
+        dt * (InverseMassMatrix(body, Angles<double>(state.q), body.mass) * g);
     adjoint->state.tail<4>() = g;
-    // What the step after this one left for the velocity before it.
+    // The share that the step after this one left for the velocity before it.
     adjoint->state.segment<2>(4) += adjoint->before;
     adjoint->before.setZero();
     Vector4<double> seen;
@@ -488,18 +479,14 @@ class AdjointGradient::Batch {
   }
 
   // Adds the residuals of the frame after a step, and goes back through the rods' laws.
-  void RodBack(int step, std::vector<StateAdjoint>* adjoints, ParameterSet<double>* by_parameter) {
-    const int people = columns_.active(step);
-    rod_velocities_.setZero(1, people);
-    for (int column = 0; column < people; ++column) {
-      const Walker& walker = walkers_[column];
-      if (!Going(walker, step)) continue;
+  void RodBack(int step, std::vector<StateAdjoint>* adjoints) {
+    rod_velocities_.setZero(1, columns_.active(step));
+    ForEachGoing(step, [&](int column, Walker& walker) {
       StateAdjoint& adjoint = (*adjoints)[column];
-      (*by_parameter)[kRodLift] +=
-          FrameBack(walker.body(), Parameters(column)[kRodLift], walker.path[step + 1],
-                    walker.Measured(step + 1, rod_.has_value()), sigmas_, walker.weight, &adjoint);
+      FrameBack(walker.body(), walker.path[step + 1], Measured(walker, step + 1), sigmas_,
+                walker.weight, &adjoint);
       rod_velocities_(0, column) = kRodSpeed * walker.scene().dt * adjoint.rod;
-    }
+    });
     if (rod_) rod_->Backward(step, rod_velocities_, &rod_inputs_);
   }
 
@@ -553,13 +540,10 @@ Result<AdjointGradient> AdjointGradient::Create(const std::vector<AdjointRecordi
   gradient.map_ = map;
   gradient.num_weights_ = options.learned->num_weights();
   gradient.num_recordings_ = static_cast<int>(recordings.size());
-  const auto frames = [&](int i) {
-    const int all = recordings[i].recording->num_frames();
-    return recordings[i].horizon > 0 ? std::min(recordings[i].horizon, all) : all;
-  };
   std::vector<int> order(recordings.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return frames(a) > frames(b); });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return Frames(recordings[a]) > Frames(recordings[b]); });
   for (size_t begin = 0; begin < order.size();) {
     std::vector<int> together;
     for (int people = 0; begin < order.size() && (together.empty() || people < kPeopleTogether);) {
@@ -587,9 +571,9 @@ AdjointCost AdjointGradient::Evaluate(const double* shared, const double* weight
   }
   if (by_shared == nullptr) return result;
   std::fill_n(by_shared, map_.num_shared(), 0.0);
-  // What is fitted is the same of everybody, and so are the slopes.
+  // Fitted values are everybody's, and so are the slopes.
   const ParameterSet<double> p = map_.Apply<double>(shared, nullptr);
-  for (const ColumnEntry& entry : map_.Entries(p, -1)) {
+  for (const ColumnEntry& entry : map_.Entries(p)) {
     by_shared[entry.column] += entry.derivative * by_parameter[entry.parameter];
   }
   return result;

@@ -11,7 +11,7 @@
 // Where the rod moves, l' = l + dt v(s, F_self, l), its adjoint goes back through v
 // (batched_networks.h) to s, F_self and p:
 //   L_l <- L_l + dt v_l L_l - (d(M a + C + G)/dl)' f
-// What people do to each other: adjoint_gradient.cc.
+// Forces between people: adjoint_gradient.cc.
 // One gradient costs about as much as three rollouts, whatever the number of weights.
 //
 //   auto gradient = AdjointGradient::Create({{&recording, weight}}, options, map, sigmas);

@@ -19,7 +19,7 @@ MatrixAt Seen(const Matrix& m) {
 // sum += left right; sum: by columns.
 template <typename Left, typename Right, typename Sum>
 void AddProduct(const Left& left, const Right& right, Sum&& sum) {
-  BestVectorKernels().add_product(Seen(left), Seen(right), sum.data(), sum.outerStride());
+  Widest<VectorKernels>().add_product(Seen(left), Seen(right), sum.data(), sum.outerStride());
 }
 
 template <typename A>
@@ -192,45 +192,24 @@ void BatchedNetwork::AddWeightGradient(double* gradient) {
   if (shape_.ldp()) output.col(h) += outputs_.rowwise().sum();
 }
 
-BatchedLayers::BatchedLayers(const RodShape& shape)
-    : BatchedLayers(shape.num_inputs(), shape.hidden, 1, shape.biased(), !shape.biased(),
-                    shape.biased()) {}
-
-BatchedLayers::BatchedLayers(const PairShape& shape)
-    : BatchedLayers(PairShape::kInputs, shape.hidden, 4, shape.ldp, false, true) {}
-
 BatchedLayers::BatchedLayers(int inputs, const std::vector<int>& hidden, int outputs,
-                             bool rectified, bool from_rest, bool output_bias)
-    : rectified_(rectified), from_rest_(from_rest), inputs_(inputs, 0) {
+                             bool rectified)
+    : rectified_(rectified), inputs_(inputs, 0) {
   int width = inputs, at = 0;
-  const auto add = [&](int rows, bool biased) {
-    layers_.push_back({rows, width, at, biased, Eigen::VectorXd::Zero(rows),
-                       Eigen::VectorXd::Zero(rows), Columns(rows, 0), Columns(rows, 0)});
-    at += rows * layers_.back().stride();
+  const auto add = [&](int rows) {
+    layers_.push_back(
+        {rows, width, at, Eigen::VectorXd::Zero(rows), Columns(rows, 0), Columns(rows, 0)});
+    at += rows * (width + 1);
     width = rows;
   };
-  for (int rows : hidden) add(rows, true);
-  add(outputs, output_bias);
-}
-
-ConstRows<double> BatchedLayers::WeightsOf(const Layer& layer) const {
-  return {weights_ + layer.at, layer.rows, layer.width, Eigen::OuterStride<>(layer.stride())};
-}
-
-Eigen::VectorXd BatchedLayers::BiasOf(const Layer& layer) const {
-  if (!layer.biased) return Eigen::VectorXd::Zero(layer.rows);
-  return ConstRows<double>(weights_ + layer.at + layer.width, layer.rows, 1,
-                           Eigen::OuterStride<>(layer.stride()));
+  for (int rows : hidden) add(rows);
+  add(outputs);
 }
 
 void BatchedLayers::Start(const double* weights) {
   weights_ = weights;
   first_ = {0};
-  for (size_t i = 0; i < layers_.size(); ++i) {
-    Layer& layer = layers_[i];
-    layer.bias.setZero();
-    if (from_rest_ && !IsOutput(i)) layer.rest = BiasOf(layer).array().tanh();
-  }
+  for (Layer& layer : layers_) layer.bias.setZero();
 }
 
 void BatchedLayers::Grow() {
@@ -252,16 +231,15 @@ void BatchedLayers::Forward(const Columns& inputs, Columns* outputs) {
   Grow();
   At(inputs_, step) = inputs;
   for (size_t i = 0; i < layers_.size(); ++i) {
-    Layer& layer = layers_[i];
-    auto values = At(layer.values, step);
-    values.colwise() = BiasOf(layer);
-    AddProduct(WeightsOf(layer), At(Below(i), step), values);
+    const ConstRows<double> weights = WeightsOf(layers_[i]);
+    auto values = At(layers_[i].values, step);
+    values.colwise() = weights.rightCols<1>().col(0);
+    AddProduct(weights.leftCols(layers_[i].width), At(Below(i), step), values);
     if (IsOutput(i)) continue;
     if (rectified_) {
       values = values.cwiseMax(0.0);
     } else {
       values = values.array().tanh();
-      values.colwise() -= layer.rest;
     }
   }
   *outputs = At(layers_.back().values, step);
@@ -280,16 +258,11 @@ void BatchedLayers::Backward(int step, const Columns& outputs, Columns* inputs) 
     } else if (rectified_) {
       back = inputs->array() * (values.array() > 0.0).cast<double>();
     } else {
-      back = inputs->array() * (1.0 - (values.colwise() + layer.rest).array().square());
+      back = inputs->array() * TanhSlopes(values.array());
     }
-    if (from_rest_ && !IsOutput(i)) {
-      const Columns twice = values.colwise() + 2.0 * layer.rest;
-      layer.bias -= inputs->cwiseProduct(values).cwiseProduct(twice).rowwise().sum();
-    } else {
-      layer.bias += back.rowwise().sum();
-    }
+    layer.bias += back.rowwise().sum();
     inputs->setZero(layer.width, n);
-    AddProduct(WeightsOf(layer).transpose(), back, *inputs);
+    AddProduct(WeightsOf(layer).leftCols(layer.width).transpose(), back, *inputs);
   }
 }
 
@@ -298,10 +271,10 @@ void BatchedLayers::AddWeightGradient(double* gradient) {
   if (total == 0) return;
   for (size_t i = 0; i < layers_.size(); ++i) {
     const Layer& layer = layers_[i];
-    Eigen::Map<RowMajor> by_weight(gradient + layer.at, layer.rows, layer.stride());
+    Eigen::Map<RowMajor> by_weight(gradient + layer.at, layer.rows, layer.width + 1);
     AddProduct(Below(i).leftCols(total), layer.back.leftCols(total).transpose(),
                by_weight.leftCols(layer.width).transpose());
-    if (layer.biased) by_weight.col(layer.width) += layer.bias;
+    by_weight.col(layer.width) += layer.bias;
   }
 }
 

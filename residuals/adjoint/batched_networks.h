@@ -14,7 +14,7 @@ namespace pushid {
 // People side by side, one column each, over as many steps as each of them has.
 //
 // People who go on longest are the first columns, so that a step has the first `active` of them.
-// What is kept of every step stands side by side in one matrix of total() columns.
+// All that is kept of a step stands side by side in one matrix of total() columns.
 class BatchColumns {
  public:
   // steps: by person; never increasing.
@@ -42,7 +42,8 @@ class BatchColumns {
 // and backwards, with D = d(cost)/dS from the adjoints of outputs and memories,
 //   Z^ = W' D,   W^ = sum over steps D Z' = one product over all (people x steps).
 // Z, activations and cells of every step are kept.
-// Of an ldp network, whose gates are all biased, k is 1 and 1, and its mass goes to the embedding.
+// An ldp network, whose gates are all biased, has for k 1 and 1, and its mass goes to the
+// embedding.
 class BatchedNetwork {
  public:
   using Columns = Eigen::MatrixXd;
@@ -97,19 +98,17 @@ class BatchedNetwork {
 // Dense layers, of a learned rod or interaction (models/learned_terms.h).
 //
 // Everybody, or each of two people who touch, is a column of U. Forwards, with H_0 = U,
-//   H_i = tanh(W_i H_(i-1) + b_i), of a law of the rod less tanh(b_i);  Y = O H_last + c
+//   H_i = tanh(W_i H_(i-1) + b_i);  Y = O H_last + c
 // and backwards, with D = H^ tanh' from the adjoint H^ of a layer's values (D = Y^ of the last),
-//   H^_below = W' D,   W^ = sum over steps D H_below' = one product over all columns,   b^ = sum D,
-// of a law of the rod b^ = -sum H^ H (H + 2 tanh(b)): tanh' less tanh' at rest, without the
-// difference of near equals. H and D of every step are kept: 16 bytes a unit and column. Of LDP's
-// networks max(0, .) stands for tanh.
+//   H^_below = W' D,   W^ = sum over steps D H_below' = one product over all columns,   b^ = sum D.
+// H and D of every step are kept: 16 bytes a unit and column. Of LDP's networks max(0, .) stands
+// for tanh.
 class BatchedLayers {
  public:
   using Columns = Eigen::MatrixXd;
 
-  // Y of the first is [dl/dt] over kRodSpeed, of the second what is before gate and mass.
-  explicit BatchedLayers(const RodShape& shape);
-  explicit BatchedLayers(const PairShape& shape);
+  // As RunLayers has them (models/learned_terms.h).
+  BatchedLayers(int inputs, const std::vector<int>& hidden, int outputs, bool rectified);
 
   // Before the first step; weights: of these layers alone, there until the last step back.
   void Start(const double* weights);
@@ -126,28 +125,25 @@ class BatchedLayers {
  private:
   // The last of them is [O c].
   struct Layer {
-    int rows, width, at;         // of W; its first weight
-    bool biased;                 // whether it has a b
-    Eigen::VectorXd rest, bias;  // tanh(b), where it is taken off; b^
-    Columns values, back;        // of all steps: H (Y of the last), D
-
-    int stride() const { return width + (biased ? 1 : 0); }
+    int rows, width, at;   // of W; its first weight
+    Eigen::VectorXd bias;  // b^
+    Columns values, back;  // of all steps: H (Y of the last), D
   };
 
-  BatchedLayers(int inputs, const std::vector<int>& hidden, int outputs, bool rectified,
-                bool from_rest, bool output_bias);
-  // What a layer sees of all steps.
+  // Inputs of a layer at all steps.
   Columns& Below(size_t layer) { return layer == 0 ? inputs_ : layers_[layer - 1].values; }
   bool IsOutput(size_t layer) const { return layer + 1 == layers_.size(); }
   auto At(Columns& of, int step) const {
     return of.middleCols(first_[step], first_[step + 1] - first_[step]);
   }
-  ConstRows<double> WeightsOf(const Layer& layer) const;
-  Eigen::VectorXd BiasOf(const Layer& layer) const;
+  // [W b].
+  ConstRows<double> WeightsOf(const Layer& layer) const {
+    return LayerAt(weights_ + layer.at, layer.rows, layer.width);
+  }
   // Room for all columns of the steps so far.
   void Grow();
 
-  const bool rectified_, from_rest_;
+  const bool rectified_;
   const double* weights_ = nullptr;
   std::vector<Layer> layers_;
   std::vector<int> first_ = {0};  // column of each step, and the total

@@ -79,7 +79,7 @@ void PersonBack(const PersonStep& s, const Vector4<double>& acceleration,
                 StateAdjoint* adjoint, ParameterSet<double>* by_parameter) {
   SelfJacobian<double> jacobian = ForceJacobian(s);
   const Matrix4<double> rigid = InverseDynamicsJacobian<double>(
-      BodyNow(s.self.body, s.state.rod, 0.0), Angles<double>(s.state.q), s.state.qd, acceleration);
+      BodyNow(s.self.body, s.state.rod), Angles<double>(s.state.q), s.state.qd, acceleration);
   jacobian.by_state.middleCols<2>(2) -= rigid.leftCols<2>();
   jacobian.by_state.middleCols<2>(6) -= rigid.rightCols<2>();
   AddBack(jacobian, by_force, adjoint, by_parameter);
@@ -87,7 +87,7 @@ void PersonBack(const PersonStep& s, const Vector4<double>& acceleration,
   AddBack(EffortJacobian(s), *by_effort, adjoint, by_parameter);
   using Jet = ceres::Jet<double, 1>;
   const PendulumState<Jet> state{s.state.q.cast<Jet>(), s.state.qd.cast<Jet>()};
-  const BodyOf<Jet> body = BodyNow<Jet>(s.self.body, Jet(s.state.rod, 0), Jet(0.0));
+  const BodyOf<Jet> body = BodyNow<Jet>(s.self.body, Jet(s.state.rod, 0));
   const Vector4<Jet> needed = InverseDynamics(body, state, Vector4<Jet>(acceleration.cast<Jet>()));
   adjoint->rod -= Dot<Jet>(by_force, needed).v[0];
 }
@@ -117,26 +117,22 @@ void PairBack(const ModelOptions& options, const Pair& pair, const ParameterSet<
 PairAdjoint PairInputsBack(const VectorX<double>& by_inputs) {
   using Jet = ceres::Jet<double, 16>;
   const PendulumState<double> at;  // any: the inputs are linear
-  VectorX<Jet> inputs;
-  SetPairInputs<Jet>(Inputs<Jet>(at, 0), Inputs<Jet>(at, 8), &inputs);
+  const VectorX<Jet> inputs = PairInputs<Jet>(Inputs<Jet>(at, 0), Inputs<Jet>(at, 8));
   PairAdjoint by_states = PairAdjoint::Zero();
   for (int i = 0; i < PairShape::kInputs; ++i) by_states += by_inputs[i] * inputs[i].v;
   return by_states;
 }
 
-double FrameBack(const Body& body, double lift, const PendulumState<double>& state,
-                 const MeasuredFrame& measured, const ResidualSigmas& sigmas, double weight,
-                 StateAdjoint* adjoint) {
-  constexpr int kRodAt = 8, kLift = 9;
-  using Jet = ceres::Jet<double, 10>;
+void FrameBack(const Body& body, const PendulumState<double>& state, const MeasuredFrame& measured,
+               const ResidualSigmas& sigmas, double weight, StateAdjoint* adjoint) {
+  constexpr int kRodAt = 8;
+  using Jet = ceres::Jet<double, 9>;
   PendulumState<Jet> jets = Inputs<Jet>(state, 0);
   jets.rod = Jet(state.rod, kRodAt);
-  const FrameVector<Jet> r =
-      FrameResidual(BodyNow<Jet>(body, jets.rod, Jet(lift, kLift)), jets, measured, sigmas);
+  const FrameVector<Jet> r = FrameResidual(BodyNow<Jet>(body, jets.rod), jets, measured, sigmas);
   const Jet cost = (0.5 * weight * weight) * r.squaredNorm();
   adjoint->state += cost.v.head<8>();
   adjoint->rod += cost.v[kRodAt];
-  return cost.v[kLift];
 }
 
 }  // namespace pushid

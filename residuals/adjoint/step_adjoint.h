@@ -46,13 +46,11 @@ void PairBack(const ModelOptions& options, const Pair& pair, const ParameterSet<
               const Vector4<double>& by_n, const Vector4<double>& by_j, const double* by_gate,
               PairAdjoint* by_states, ParameterSet<double>* by_parameter);
 
-// The inputs of a learned interaction, of n who meets j (SetPairInputs).
+// The inputs of a learned interaction, of n who meets j (PairInputs).
 PairAdjoint PairInputsBack(const VectorX<double>& by_inputs);
 
-// Half the squared residual of a person at a frame, times weight squared; returns its derivative by
-// the cart's lift (BodyNow).
-double FrameBack(const Body& body, double lift, const PendulumState<double>& state,
-                 const MeasuredFrame& measured, const ResidualSigmas& sigmas, double weight,
-                 StateAdjoint* adjoint);
+// Half the squared residual of a person at a frame, times weight squared.
+void FrameBack(const Body& body, const PendulumState<double>& state, const MeasuredFrame& measured,
+               const ResidualSigmas& sigmas, double weight, StateAdjoint* adjoint);
 
 }  // namespace pushid

@@ -26,7 +26,6 @@ int MostTails(const std::vector<const RolloutProblem*>& problems) {
 // Whether two have the same columns.
 bool SameLanes(const RolloutProblem& a, const RolloutProblem& b) {
   return a.options.friction == b.options.friction &&
-         a.options.cart_derivative == b.options.cart_derivative &&
          a.layout.first_acting == b.layout.first_acting &&
          a.layout.VelocityColumn() == b.layout.VelocityColumn() &&
          std::equal(a.map.fitted.begin(), a.map.fitted.end(), b.map.fitted.begin(),
@@ -35,41 +34,45 @@ bool SameLanes(const RolloutProblem& a, const RolloutProblem& b) {
                     });
 }
 
-using ConstVector = Eigen::Map<const Eigen::VectorXd>;
-
-// The rows of one frame of one person, of motion or of platforms.
-struct FrameRows {
-  int person, count;
-  double weight;            // on all of them, which the robust loss does not see
-  const double* residuals;  // count
-  double* by_column;        // count x PaddedSize of the columns; the visitor may change them
-};
-
-// By the columns of `inputs`, which may be none.
-template <typename Visit>
-RolloutStatus VisitRows(const RolloutProblem& p, const SensitivityInputs& inputs,
-                        const Visit& visit) {
+// Sums over the rows of a recording by jets, by the columns of `inputs`, which may be none: of each
+// person, or of all where there is one sum. False outside the model's domain.
+bool SumUpRows(const RolloutProblem& p, const SensitivityInputs& inputs, int columns,
+               LaneSums wanted, std::vector<RolloutSums>* sums) {
   // A thread's own, used again: asking the system for them each time costs a tenth of a rollout.
   thread_local std::vector<double> residuals;
   thread_local RowMajorMatrix rows;
-  const RolloutStatus status = RowsByJets(p, inputs, &residuals, &rows);
-  if (!status.ok) return status;
+  if (!RowsByJets(p, inputs, &residuals, &rows).ok) return false;
+  for (RolloutSums& sum : *sums) {
+    sum.ok = true;
+    sum.plain = sum.robust = NormalEquations(columns);
+  }
   int row = 0;
-  const auto next = [&](int person, int count, double weight) {
-    double* const by_column = rows.data() + static_cast<size_t>(row) * inputs.num_columns;
-    visit(FrameRows{person, count, weight, residuals.data() + row, by_column});
+  // weight: on all of the rows, which the robust loss does not see.
+  const auto add = [&](int person, int count, double weight) {
+    RolloutSums& sum = (*sums)[sums->size() == 1 ? 0 : person];
+    const Eigen::Map<const Eigen::VectorXd> r(residuals.data() + row, count);
+    Eigen::Map<RowMajorMatrix> by_column(rows.data() + static_cast<size_t>(row) * rows.cols(),
+                                         count, rows.cols());
     row += count;
+    if (wanted == LaneSums::kSquares) {
+      sum.squares += r.squaredNorm();
+      return;
+    }
+    sum.plain.Add(count, by_column.data(), r.data());
+    if (wanted != LaneSums::kRobust) return;
+    CorrectForRobustLoss(r, weight, p.sigmas.OfFrames(), by_column);
+    sum.robust.Add(count, by_column.data(), r.data());
   };
   for (int t = 1; t < p.horizon; ++t) {
     for (int n = 0; n < p.recording->num_people(); ++n) {
-      next(n, kFrameResiduals, p.weight * p.recording->Weight(n, t));
+      add(n, kFrameResiduals, p.weight * p.recording->Weight(n, t));
     }
   }
   const std::vector<int> on_plates = p.PeopleOnPlates();
   for (int t = 0; t + 1 < p.horizon; ++t) {
-    for (int n : on_plates) next(n, kPlateResiduals, p.weight * p.recording->plates[n][t].weight);
+    for (int n : on_plates) add(n, kPlateResiduals, p.weight * p.recording->plates[n][t].weight);
   }
-  return status;
+  return true;
 }
 
 }  // namespace
@@ -81,8 +84,7 @@ bool HasLanes(const RolloutProblem& problem) {
 }
 
 LaneGroup::LaneGroup(std::vector<const RolloutProblem*> problems, const PersonLanes& lanes)
-    : problems_(std::move(problems)),
-      tables_(lanes, MostFrames(problems_), MostTails(problems_), MostFrames(problems_)) {
+    : problems_(std::move(problems)), tables_(lanes, MostTails(problems_), MostFrames(problems_)) {
   for (size_t i = 0; i < problems_.size(); ++i) {
     const RolloutProblem& problem = *problems_[i];
     const int lane = static_cast<int>(i);
@@ -102,59 +104,38 @@ LaneGroup::LaneGroup(std::vector<const RolloutProblem*> problems, const PersonLa
 
 std::vector<RolloutSums> LaneGroup::Evaluate(const std::vector<double const* const*>& blocks,
                                              LaneSums sums) const {
+  thread_local LaneResults results;  // a thread's own, used again
   const RolloutProblem& first = *problems_[0];
-  const int columns = first.layout.num_acting();
-  // A thread's own, used again.
-  thread_local std::vector<double> constants, failed, residuals, squares, plain, robust;
-  thread_local LaneParameters parameters;
-  constants = tables_.constants();
-  const int width = tables_.width();
-  parameters.Clear(width);
-  const bool derivatives = sums != LaneSums::kSquares && sums != LaneSums::kNone;
-  for (size_t lane = 0; lane < problems_.size(); ++lane) {
-    const RolloutProblem& problem = *problems_[lane];
-    const ScenePerson& person = problem.recording->scene.people[0];
-    const double* const free = problem.layout.VelocityBlock(blocks[lane]);
-    for (int i = 0; i < 4; ++i) {
-      constants[(kLaneStart + 4 + i) * width + lane] =
-          free != nullptr ? free[i] : person.start.qd[i];
-    }
-    const auto sets = problem.layout.Parameters<double>(problem.map, blocks[lane]);
-    const ParameterSet<double>& p = sets[0];
-    parameters.Set(
-        static_cast<int>(lane), p,
-        derivatives ? problem.layout.Entries(problem.map, p, 0) : std::vector<ColumnEntry>());
+  const int columns = first.layout.num_acting(), width = tables_.width();
+  std::vector<LanePerson> people(problems_.size());
+  for (size_t lane = 0; lane < people.size(); ++lane) {
+    const RolloutProblem& p = *problems_[lane];
+    LanePerson& person = people[lane];
+    person.parameters = p.layout.Parameters<double>(p.map, blocks[lane])[0];
+    person.velocity = p.layout.VelocityBlock(blocks[lane]);
+    if (sums == LaneSums::kSquares || sums == LaneSums::kNone) continue;
+    person.entries = p.layout.Entries(p.map, person.parameters, 0);
   }
-  LaneInputs in = tables_.Inputs();
-  in.sigmas = first.sigmas;
-  in.columns = columns;
-  in.velocity_column = first.layout.VelocityColumn();
-  parameters.In(&in);
-  in.constants = constants.data();
-  const int size = (columns + 1) * (columns + 1) * width;
-  failed.resize(width);
-  squares.resize(width);
-  if (sums == LaneSums::kNone) residuals.resize((in.frames - 1) * kFrameResiduals * width);
-  plain.resize(size);
-  robust.resize(size);
-  tables_.Roll(in, sums,
-               {failed.data(), residuals.data(), squares.data(), plain.data(), robust.data()});
-  std::vector<RolloutSums> results(problems_.size());
-  for (size_t lane = 0; lane < results.size(); ++lane) {
-    results[lane].ok = failed[lane] == 0.0;
-    results[lane].squares = squares[lane];
-    if (sums == LaneSums::kSquares || !results[lane].ok) continue;
+  tables_.Roll(
+      {sums, MostFrames(problems_), columns, first.layout.VelocityColumn(), 0, first.sigmas},
+      people, &results);
+  std::vector<RolloutSums> all(problems_.size());
+  for (size_t lane = 0; lane < all.size(); ++lane) {
+    all[lane].ok = results.failed[lane] == 0.0;
+    all[lane].squares = results.squares[lane];
+    if (sums == LaneSums::kSquares || !all[lane].ok) continue;
     if (sums == LaneSums::kNone) {
       const int rows = problems_[lane]->num_motion_rows();
-      results[lane].residuals.resize(rows);
-      for (int k = 0; k < rows; ++k) results[lane].residuals[k] = residuals[k * width + lane];
+      for (int k = 0; k < rows; ++k) {
+        all[lane].residuals.push_back(results.residuals[k * width + lane]);
+      }
       continue;
     }
-    results[lane].plain = NormalEquations(columns, plain.data() + lane, width);
+    all[lane].plain = NormalEquations(columns, results.plain.data() + lane, width);
     if (sums != LaneSums::kRobust) continue;
-    results[lane].robust = NormalEquations(columns, robust.data() + lane, width);
+    all[lane].robust = NormalEquations(columns, results.robust.data() + lane, width);
   }
-  return results;
+  return all;
 }
 
 std::vector<SideBySide> PutSideBySide(const std::vector<RolloutAt>& rollouts) {
@@ -173,7 +154,7 @@ std::vector<SideBySide> PutSideBySide(const std::vector<RolloutAt>& rollouts) {
     std::vector<const RolloutProblem*> together;
     for (size_t i = first; i < order.size(); ++i) {
       const RolloutProblem* const next = rollouts[order[i]].problem.get();
-      const bool full = static_cast<int>(members.size()) == BestPersonLanes().lanes;
+      const bool full = static_cast<int>(members.size()) == Widest<PersonLanes>().lanes;
       if (full || !SameLanes(of_all, *next)) break;
       members.push_back(order[i]);
       together.push_back(next);
@@ -223,16 +204,10 @@ bool CondensedRollout::Evaluate(double const* const* blocks, double* residuals,
     inputs.num_columns = NormalEquations::PaddedSize(columns);
     inputs.weight_column = -1;
   }
-  RolloutSums sums;
-  sums.plain = NormalEquations(columns);
-  sums.ok = VisitRows(p, inputs, [&](const FrameRows& rows) {
-              if (jacobians == nullptr) {
-                sums.squares += ConstVector(rows.residuals, rows.count).squaredNorm();
-              } else {
-                sums.plain.Add(rows.count, rows.by_column, rows.residuals);
-              }
-            }).ok;
-  return FillRows(sums, residuals, jacobians);
+  std::vector<RolloutSums> sums(1);
+  return SumUpRows(p, inputs, columns, jacobians != nullptr ? LaneSums::kPlain : LaneSums::kSquares,
+                   &sums) &&
+         FillRows(sums[0], residuals, jacobians);
 }
 
 bool CondensedRollout::FillRows(const RolloutSums& sums, double* residuals,
@@ -254,48 +229,29 @@ bool CondensedRollout::FillRows(const RolloutSums& sums, double* residuals,
   return true;
 }
 
-CondensedRollout::PersonRows CondensedRollout::RowsOf(const NormalEquations& plain,
-                                                      const NormalEquations* robust) const {
-  const int acting = plain.columns();
-  const RowMajorMatrix factor = plain.Factor();
-  PersonRows rows{columns_.Expand(factor.leftCols(acting)), factor.col(acting), {}};
-  if (robust != nullptr) {
-    rows.robust_jacobian = columns_.Expand(robust->Factor().leftCols(acting));
-  }
-  return rows;
-}
-
-bool CondensedRollout::FillPeople(const RolloutSums& sums, bool robust,
+bool CondensedRollout::FillPeople(const std::vector<RolloutSums>& sums, bool robust,
                                   std::vector<PersonRows>* people) const {
-  if (!sums.ok) return false;
-  *people = {RowsOf(sums.plain, robust ? &sums.robust : nullptr)};
+  people->clear();
+  for (const RolloutSums& sum : sums) {
+    if (!sum.ok) return false;
+    const int acting = sum.plain.columns();
+    const RowMajorMatrix factor = sum.plain.Factor();
+    people->push_back({columns_.Expand(factor.leftCols(acting)), factor.col(acting), {}});
+    if (!robust) continue;
+    people->back().robust_jacobian = columns_.Expand(sum.robust.Factor().leftCols(acting));
+  }
   return true;
 }
 
 bool CondensedRollout::EvaluatePeople(double const* const* blocks, bool robust,
                                       std::vector<PersonRows>* people) const {
-  if (in_lanes() != nullptr) {
-    return FillPeople(Alone(blocks, robust ? LaneSums::kRobust : LaneSums::kPlain), robust, people);
-  }
+  const LaneSums wanted = robust ? LaneSums::kRobust : LaneSums::kPlain;
+  if (in_lanes() != nullptr) return FillPeople({Alone(blocks, wanted)}, robust, people);
   const RolloutProblem& p = *problem_;
-  const int acting = p.layout.num_acting();
-  std::vector<NormalEquations> plain(num_people(), NormalEquations(acting));
-  std::vector<NormalEquations> corrected(robust ? num_people() : 0, NormalEquations(acting));
-  const SensitivityInputs inputs = RolloutInputs(p.recording->scene, p.map, p.layout, blocks);
-  const RolloutStatus status = VisitRows(p, inputs, [&](const FrameRows& rows) {
-    plain[rows.person].Add(rows.count, rows.by_column, rows.residuals);
-    if (!robust) return;
-    CorrectForRobustLoss(
-        ConstVector(rows.residuals, rows.count), rows.weight, p.sigmas.OfFrames(),
-        Eigen::Map<RowMajorMatrix>(rows.by_column, rows.count, inputs.num_columns));
-    corrected[rows.person].Add(rows.count, rows.by_column, rows.residuals);
-  });
-  if (!status.ok) return false;
-  people->clear();
-  for (int n = 0; n < num_people(); ++n) {
-    people->push_back(RowsOf(plain[n], robust ? &corrected[n] : nullptr));
-  }
-  return true;
+  std::vector<RolloutSums> sums(num_people());
+  return SumUpRows(p, RolloutInputs(p.recording->scene, p.map, p.layout, blocks),
+                   p.layout.num_acting(), wanted, &sums) &&
+         FillPeople(sums, robust, people);
 }
 
 }  // namespace pushid

@@ -30,7 +30,7 @@ namespace pushid {
 // Whether a recording can be rolled out so.
 bool HasLanes(const RolloutProblem& problem);
 
-// What a rollout's residuals sum up to.
+// Sums over a rollout's residuals.
 struct RolloutSums {
   bool ok = false;                // stayed within the domain
   double squares = 0.0;           // r'r; all there is without derivatives
@@ -42,7 +42,7 @@ class LaneGroup {
  public:
   // problems: at most lanes.lanes, which have lanes and the same columns, and outlive the group.
   explicit LaneGroup(std::vector<const RolloutProblem*> problems,
-                     const PersonLanes& lanes = BestPersonLanes());
+                     const PersonLanes& lanes = Widest<PersonLanes>());
 
   // The sums of each rollout at its blocks, those that LaneSums asks for.
   std::vector<RolloutSums> Evaluate(const std::vector<double const* const*>& blocks,
@@ -93,14 +93,13 @@ class CondensedRollout : public ceres::CostFunction {
   const RolloutProblem* in_lanes() const { return HasLanes(*problem_) ? problem_.get() : nullptr; }
   // The outputs of Evaluate and EvaluatePeople from sums that were computed before.
   bool FillRows(const RolloutSums& sums, double* residuals, double** jacobians) const;
-  bool FillPeople(const RolloutSums& sums, bool robust, std::vector<PersonRows>* people) const;
+  bool FillPeople(const std::vector<RolloutSums>& sums, bool robust,
+                  std::vector<PersonRows>* people) const;
 
  private:
   // Sums of the recording, where it has lanes, in a group of its own that is laid out at the first
   // call. Ceres evaluates a block from one thread at a time.
   RolloutSums Alone(double const* const* blocks, LaneSums sums) const;
-  // robust: null without.
-  PersonRows RowsOf(const NormalEquations& plain, const NormalEquations* robust) const;
 
   std::shared_ptr<const RolloutProblem> problem_;
   ActingColumns columns_;

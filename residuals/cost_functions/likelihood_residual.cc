@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "residuals/jets/autodiff_rollout.h"
-#include "residuals/jets/vector_jet.h"
 
 namespace pushid {
 namespace {
@@ -160,19 +159,10 @@ bool LikelihoodResidual::Rows(const std::vector<ParameterSet<double>>& parameter
 }
 
 bool LikelihoodResidual::ByJets(const SensitivityInputs& in, RowMajorMatrix* by_acting) const {
-  const size_t people = in.parameters.size();
   for (int first = 0; first < by_acting->cols(); first += VectorJet::kColumns) {
     const int count = std::min<int>(VectorJet::kColumns, by_acting->cols() - first);
-    std::vector<ParameterSet<VectorJet>> parameters(people);
-    for (size_t n = 0; n < people; ++n) {
-      for (int i = 0; i < kNumParameters; ++i) parameters[n][i] = VectorJet(in.parameters[n][i]);
-      for (const ColumnEntry& entry : in.entries[n]) {
-        const int k = entry.column - first;
-        if (0 <= k && k < count) parameters[n][entry.parameter].AddSlope(k, entry.derivative);
-      }
-    }
     std::vector<GaussianDensity<VectorJet>> densities(problem_.num_densities());
-    Transitions(problem_, parameters, &densities);
+    Transitions(problem_, JetInputs(problem_.options, in, first).parameters, &densities);
     std::vector<VectorJet> rows;
     if (!RowsOf(densities, &rows)) return false;
     for (Eigen::Index row = 0; row < by_acting->rows(); ++row) {

@@ -13,8 +13,8 @@
 //   residuals: kGaussianRows for frames 1 .. T - 1; ordered by frame, then person
 //   blocks:    BlockLayout without initial velocities: a filter knows how little it knows of them
 // Jacobian of transitions by jets over the acting columns; of innovations by differences of whole
-// filters, good to 3e-4, which cost 12 filters for twelve parameters. Rejected: dual numbers over
-// jets, exact, for a filter's covariance needs the derivatives of the step's own derivatives; they
+// filters, good to 3e-4, which cost 12 filters for twelve parameters. Rejected: jets over jets,
+// exact, for a filter's covariance needs the derivatives of the step's own derivatives; they
 // cost 55.
 #pragma once
 
@@ -25,7 +25,7 @@
 #include <vector>
 
 #include "datasets/loading/pendulum_recording.h"
-#include "models/dual.h"
+#include "models/jet.h"
 #include "models/options.h"
 #include "models/pendulum_filter.h"
 #include "residuals/frame_residual.h"
@@ -195,36 +195,36 @@ std::vector<PendulumState<T>> StatesAtNode(T const* const* nodes, int people, do
 
 template <typename T>
 bool SceneAction::operator()(T const* const* nodes, T* rows) const {
-  using D = Dual<T, 4>;  // by the velocity of one person
+  using D = JetOf<T, 4>;  // by the velocity of one person
   const double dt = scene->dt;
   const int people = scene->num_people();
   const std::vector<PendulumState<T>> states = StatesAtNode(nodes, people, dt);
-  std::vector<PendulumState<D>> duals(people);
+  std::vector<PendulumState<D>> jets(people);
   std::vector<ParameterSet<D>> constants(people);
   for (int n = 0; n < people; ++n) {
     if (!OutsideDomain(scene->people[n].body, states[n]).empty()) return false;
     for (int i = 0; i < 4; ++i) {
-      duals[n].q[i] = D::Constant(states[n].q[i]);
-      duals[n].qd[i] = D::Constant(states[n].qd[i]);
+      jets[n].q[i] = D::Constant(states[n].q[i]);
+      jets[n].qd[i] = D::Constant(states[n].qd[i]);
     }
     for (int i = 0; i < kNumParameters; ++i) constants[n][i] = D((*parameters)[n][i]);
   }
   ModelStep<D> forces(*scene, *options, constants);
   std::vector<int> scratch;
   for (int n = 0; n < people; ++n, rows += kRows) {
-    for (int i = 0; i < 4; ++i) duals[n].qd[i].v[i] = T(1.0);
-    forces.Update(duals.data());
+    for (int i = 0; i < 4; ++i) jets[n].qd[i] = D::Input(states[n].qd[i], i);
+    forces.Update(jets.data());
     forces.Prepare(n, &scratch);
-    const NetForce<D> force = forces.On(n, frame, duals[n].qd);
+    const NetForce<D> force = forces.On(n, frame, jets[n].qd);
     const Vector4<D> acceleration = forces.AccelerationOf(n, force);
-    for (int i = 0; i < 4; ++i) duals[n].qd[i].v[i] = T(0.0);
+    for (int i = 0; i < 4; ++i) jets[n].qd[i] = D::Constant(states[n].qd[i]);
     Vector4<T> apart;
     T divergence(0.0);
     for (int i = 0; i < 4; ++i) {
       const T second =
           (nodes[2][4 * n + i] - 2.0 * nodes[1][4 * n + i] + nodes[0][4 * n + i]) / (dt * dt);
       apart[i] = second - acceleration[i].a;
-      divergence += acceleration[i].v[i];
+      divergence += acceleration[i].Slope(i);
     }
     const Body& body = scene->people[n].body;
     ParameterSet<T> p;

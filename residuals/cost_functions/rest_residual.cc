@@ -61,7 +61,7 @@ SceneRollouts::SceneRollouts(std::vector<Scene> scenes, const ModelOptions& opti
       tails = std::max(tails, NumTails(scenes_[i], options_));
       steps = std::max(steps, NumSteps(scenes_[i], end_));
     }
-    Group group{LaneTables(lanes, end_, tails, steps), first, count, {}, {}};
+    Group group{LaneTables(lanes, tails, steps), first, count, {}, {}};
     for (int i = 0; i < count; ++i) group.tables.Set(i, scenes_[first + i], options_, end_);
     groups_.push_back(std::move(group));
     first += count;
@@ -70,7 +70,7 @@ SceneRollouts::SceneRollouts(std::vector<Scene> scenes, const ModelOptions& opti
 
 bool SceneRollouts::Roll(const std::vector<ParameterSet<double>>& parameters,
                          const double* network_weights) {
-  for (Group& group : groups_) RollGroup(parameters[0], {}, 0, end_, group, &group.states);
+  for (Group& group : groups_) RollGroup({parameters[0], {}}, 0, end_, group, &group.states);
   const size_t one_by_one = groups_.empty() ? scenes_.size() : 0;
   paths_.resize(one_by_one);
   last_.resize(one_by_one);
@@ -91,7 +91,7 @@ bool SceneRollouts::Differentiate(const SensitivityInputs& inputs, int columns,
     const auto asked = frames.begin() + group.first;
     const int most = *std::max_element(asked, asked + group.count);
     if (most == 0) continue;
-    if (!RollGroup(inputs.parameters[0], inputs.entries[0], columns, most, group,
+    if (!RollGroup({inputs.parameters[0], inputs.entries[0]}, columns, most, group,
                    &group.derivatives)) {
       return false;
     }
@@ -110,32 +110,17 @@ bool SceneRollouts::Differentiate(const SensitivityInputs& inputs, int columns,
   return true;
 }
 
-bool SceneRollouts::RollGroup(const ParameterSet<double>& parameters,
-                              const std::vector<ColumnEntry>& entries, int columns, int end,
-                              const Group& group, std::vector<double>* states) {
-  // A thread's own, used again.
-  thread_local LaneParameters of_lanes;
-  thread_local std::vector<double> failed, squares;
-  const int width = group.tables.width();
-  LaneInputs in = group.tables.Inputs();
-  in.frames = end;
-  in.first_state = begin_;
-  in.columns = columns;
-  of_lanes.Clear(width);
-  for (int i = 0; i < group.count; ++i) of_lanes.Set(i, parameters, entries);
-  of_lanes.In(&in);
-  failed.resize(width);
-  squares.resize(width);
-  states->resize(std::max(0, end - begin_) * 8 * (1 + columns) * width);
-  LaneOutputs out;
-  out.failed = failed.data();
-  out.squares = squares.data();
-  out.states = states->data();
-  group.tables.Roll(in, LaneSums::kStates, out);
+bool SceneRollouts::RollGroup(const LanePerson& person, int columns, int end, const Group& group,
+                              LaneResults* results) {
+  LaneRequest request;
+  request.frames = end;
+  request.first_state = begin_;
+  request.columns = columns;
+  group.tables.Roll(request, std::vector<LanePerson>(group.count, person), results);
   bool inside = true;
   for (int i = 0; i < group.count; ++i) {
-    inside_[group.first + i] = failed[i] == 0.0;
-    inside = inside && failed[i] == 0.0;
+    inside_[group.first + i] = results->failed[i] == 0.0;
+    inside = inside && inside_[group.first + i];
   }
   return inside;
 }
@@ -150,7 +135,7 @@ PendulumState<double> SceneRollouts::At(int scene, int frame, int person) const 
   const Group& group = GroupOf(scene);
   const int width = group.tables.width();
   const double* const from =
-      group.states.data() + (frame - begin_) * 8 * width + scene - group.first;
+      group.states.states.data() + (frame - begin_) * 8 * width + scene - group.first;
   PendulumState<double> state;
   for (int i = 0; i < 4; ++i) {
     state.q[i] = from[i * width];
@@ -167,7 +152,7 @@ void SceneRollouts::DerivativesAt(int scene, int frame, int person,
   }
   const Group& group = GroupOf(scene);
   const int width = group.tables.width();
-  const double* from = group.derivatives.data() +
+  const double* from = group.derivatives.states.data() +
                        ((frame - begin_) * (1 + columns_) + 1) * 8 * width + scene - group.first;
   by_column->resize(8, columns_);
   for (int column = 0; column < columns_; ++column) {

@@ -46,10 +46,10 @@ class SceneRollouts {
   struct Group {  // of scenes side by side
     LaneTables tables;
     int first, count;
-    std::vector<double> states, derivatives;  // as LaneOutputs has them, without and with columns
+    LaneResults states, derivatives;  // without and with columns
   };
-  bool RollGroup(const ParameterSet<double>& parameters, const std::vector<ColumnEntry>& entries,
-                 int columns, int end, const Group& group, std::vector<double>* states);
+  bool RollGroup(const LanePerson& person, int columns, int end, const Group& group,
+                 LaneResults* results);
   const Group& GroupOf(int scene) const;
 
   std::vector<Scene> scenes_;

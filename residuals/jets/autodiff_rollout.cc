@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "residuals/kernels/vector_kernels.h"
-
 namespace pushid {
 namespace {
 
@@ -23,10 +21,9 @@ void StateColumns::Resize(int num_frames, int num_people, int num_columns) {
 const std::vector<const RolloutJets*>& SupportedRolloutJets() {
   static const std::vector<const RolloutJets*> supported = [] {
 #ifdef PUSHID_NATIVE
-    return std::vector<const RolloutJets*>{&RolloutJetsOf<128>()};
+    return std::vector<const RolloutJets*>{&OfWidth<RolloutJets, 128>()};
 #else
-    std::vector<const RolloutJets*> all = PUSHID_OF_WIDTHS(RolloutJetsOf);
-    all.resize(NumVectorWidths());
+    std::vector<const RolloutJets*> all = Supported<RolloutJets>();
     while (all.back()->alignment != alignof(Vector4<double>)) all.pop_back();
     return all;
 #endif

@@ -1,6 +1,6 @@
 // residuals: derivatives of rollouts by automatic differentiation: the models' own templates and
 // RolloutResidual (rollout_residual.h) with a scalar that holds a value and its derivatives by
-// eight columns (vector_jet.h), in as many passes as a recording has acting columns
+// eight columns (models/jet.h), in as many passes as a recording has acting columns
 // (parameter_map.h). Compiled once for each width of vectors, the widest that the processor has
 // chosen at run time; the bits are those of every other width.
 //
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "models/pendulum_filter.h"
+#include "residuals/kernels/vector_kernels.h"
 #include "residuals/rollout_residual.h"
 
 namespace pushid {
@@ -39,7 +40,50 @@ class StateColumns {
   std::vector<double> storage_;  // never shrinks
 };
 
-// What one width of vectors offers: eight columns of the inputs, from `first` on.
+namespace {
+
+// Inputs of a rollout, with their derivatives by the eight columns from `first` on.
+struct JetInputs {
+  using Jet = VectorJet;
+  std::vector<ParameterSet<Jet>> parameters;
+  std::vector<Vector4<Jet>> velocity;
+  std::vector<Jet> weights;
+
+  JetInputs(const ModelOptions& options, const SensitivityInputs& in, int first) {
+    const auto seed = [first](Jet* jet, int column, double slope) {
+      if (column < first || column >= first + Jet::kColumns) return;
+      jet->AddSlope(column - first, slope);
+    };
+    const size_t people = in.parameters.size();
+    parameters.resize(people);
+    velocity.resize(people);
+    for (size_t n = 0; n < people; ++n) {
+      for (int i = 0; i < kNumParameters; ++i) parameters[n][i] = Jet(in.parameters[n][i]);
+      for (const ColumnEntry& entry : in.entries[n]) {
+        seed(&parameters[n][entry.parameter], entry.column, entry.derivative);
+      }
+      for (int i = 0; i < 4; ++i) {
+        velocity[n][i] = Jet(in.initial_velocity[n][i]);
+        if (in.velocity_column < 0) continue;
+        seed(&velocity[n][i], in.velocity_column + 4 * static_cast<int>(n) + i, 1.0);
+      }
+    }
+    if (options.learned == nullptr) return;
+    const double* const from =
+        in.network_weights != nullptr ? in.network_weights : options.learned->weights.data();
+    weights.resize(options.learned->weights.size());
+    for (size_t i = 0; i < weights.size(); ++i) {
+      weights[i] = Jet(from[i]);
+      if (in.weight_column < 0) continue;
+      seed(&weights[i], in.weight_column + static_cast<int>(i), 1.0);
+    }
+  }
+  const Jet* network() const { return weights.empty() ? nullptr : weights.data(); }
+};
+
+}  // namespace
+
+// Passes of one width of vectors: eight columns of the inputs, from `first` on.
 struct RolloutJets {
   int bits;               // of a vector
   std::size_t alignment;  // of the models' vectors, which must be that of everybody else
@@ -52,7 +96,10 @@ struct RolloutJets {
                      const std::vector<ParameterSet<double>>& parameters);  // the caller's
 };
 
-// What this processor can run, the widest last; never empty.
+PUSHID_WIDTHS(RolloutJets);
+
+// The jets that this processor can run, the widest last: of a build for one processor one alone,
+// else those that align the models' vectors as everybody else does.
 const std::vector<const RolloutJets*>& SupportedRolloutJets();
 
 // All residuals of a recording, and their derivatives by the columns of the inputs:
@@ -80,15 +127,5 @@ class AutoDiffRollout : public ceres::CostFunction {
   std::shared_ptr<const RolloutProblem> problem_;
   ActingColumns columns_;
 };
-
-// By the bits of a vector, as VectorKernelsOf; a build for one processor has the first alone.
-template <int kBits>
-const RolloutJets& RolloutJetsOf();
-template <>
-const RolloutJets& RolloutJetsOf<128>();
-template <>
-const RolloutJets& RolloutJetsOf<256>();
-template <>
-const RolloutJets& RolloutJetsOf<512>();
 
 }  // namespace pushid

@@ -1,4 +1,4 @@
-// residuals: the choice among the vector kernels.
+// residuals: what the processor has.
 #include "residuals/kernels/vector_kernels.h"
 
 namespace pushid {
@@ -11,16 +11,5 @@ int NumVectorWidths() {
 #endif
   return 1;
 }
-
-const std::vector<const VectorKernels*>& SupportedVectorKernels() {
-  static const std::vector<const VectorKernels*> supported = [] {
-    std::vector<const VectorKernels*> all = PUSHID_OF_WIDTHS(VectorKernelsOf);
-    all.resize(NumVectorWidths());
-    return all;
-  }();
-  return supported;
-}
-
-const VectorKernels& BestVectorKernels() { return *SupportedVectorKernels().back(); }
 
 }  // namespace pushid

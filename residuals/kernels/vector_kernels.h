@@ -37,30 +37,39 @@ struct VectorKernels {
                    double* g, std::ptrdiff_t g_stride);
 };
 
-// By the bits of a vector, each compiled for its instructions (CMakeLists.txt).
-template <int kBits>
-const VectorKernels& VectorKernelsOf();
-template <>
-const VectorKernels& VectorKernelsOf<128>();
-template <>
-const VectorKernels& VectorKernelsOf<256>();  // AVX2 and FMA
-template <>
-const VectorKernels& VectorKernelsOf<512>();  // AVX-512F and DQ
+// The kernels, lanes (lanes/person_lanes.h) or jets (jets/autodiff_rollout.h) for vectors of so
+// many bits, each compiled for its instructions (CMakeLists.txt): 256 have AVX2 and FMA, 512
+// AVX-512F and DQ.
+template <typename Code, int kBits>
+const Code& OfWidth();
+#define PUSHID_WIDTHS(Code)         \
+  template <>                       \
+  const Code& OfWidth<Code, 128>(); \
+  template <>                       \
+  const Code& OfWidth<Code, 256>(); \
+  template <>                       \
+  const Code& OfWidth<Code, 512>()
+PUSHID_WIDTHS(VectorKernels);
 
-// What this processor can run, the widest last; never empty.
-const std::vector<const VectorKernels*>& SupportedVectorKernels();
-
-const VectorKernels& BestVectorKernels();
-
-// Everything that a release has for each width, as VectorKernelsOf; the widest last.
-#if defined(__x86_64__)
-#define PUSHID_OF_WIDTHS(Of) \
-  { &Of<128>(), &Of<256>(), &Of<512>() }
-#else
-#define PUSHID_OF_WIDTHS(Of) \
-  { &Of<128>() }
-#endif
-// The first of them, as many as this processor can run.
+// As many of 128, 256 and 512 bits as this processor can run.
 int NumVectorWidths();
+
+// All widths that this processor can run, the widest last; never empty.
+template <typename Code>
+const std::vector<const Code*>& Supported() {
+  static const std::vector<const Code*> supported = [] {
+    std::vector<const Code*> all = {&OfWidth<Code, 128>()};
+#if defined(__x86_64__)
+    if (NumVectorWidths() > 1) all.push_back(&OfWidth<Code, 256>());
+    if (NumVectorWidths() > 2) all.push_back(&OfWidth<Code, 512>());
+#endif
+    return all;
+  }();
+  return supported;
+}
+template <typename Code>
+const Code& Widest() {
+  return *Supported<Code>().back();
+}
 
 }  // namespace pushid

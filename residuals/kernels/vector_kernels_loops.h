@@ -85,7 +85,7 @@ void AddGram(int rows, std::ptrdiff_t columns, const double* a, std::ptrdiff_t a
 }  // namespace
 
 template <>
-const VectorKernels& VectorKernelsOf<PUSHID_WIDTH>() {
+const VectorKernels& OfWidth<VectorKernels, PUSHID_WIDTH>() {
   static constexpr VectorKernels kernels = {PUSHID_WIDTH, AddProduct, AddRows, AddGram};
   return kernels;
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "models/step.h"
-#include "residuals/kernels/vector_kernels.h"
 
 namespace pushid {
 namespace {
@@ -20,66 +19,28 @@ std::vector<const ScenePush*> PushesWithTails(const Scene& scene, const ModelOpt
 
 }  // namespace
 
-const std::vector<const PersonLanes*>& SupportedPersonLanes() {
-  static const std::vector<const PersonLanes*> supported = [] {
-    std::vector<const PersonLanes*> all = PUSHID_OF_WIDTHS(PersonLanesOf);
-    all.resize(NumVectorWidths());
-    return all;
-  }();
-  return supported;
-}
-
-const PersonLanes& BestPersonLanes() { return *SupportedPersonLanes().back(); }
-
 const PersonLanes& PersonLanesFor(int people) {
-  for (const PersonLanes* lanes : SupportedPersonLanes()) {
+  for (const PersonLanes* lanes : Supported<PersonLanes>()) {
     if (lanes->lanes >= people) return *lanes;
   }
-  return BestPersonLanes();
+  return Widest<PersonLanes>();
 }
 
 bool HasLanes(const Scene& scene, const ModelOptions& options) {
   return scene.num_people() == 1 && options.stance == Stance::kSlide &&
          options.learned == nullptr && options.own_laws.empty() && options.delay == Delay::kNone &&
-         options.body != BodyModel::kTable && !scene.ground.moves();
+         options.cart_derivative == CartDerivative::kNone && options.body != BodyModel::kTable &&
+         !scene.ground.moves();
 }
 
 int NumTails(const Scene& scene, const ModelOptions& options) {
   return static_cast<int>(PushesWithTails(scene, options).size());
 }
 
-void LaneParameters::Clear(int width) {
-  width_ = width;
-  values_.assign(kLaneParameters * width, 1.0);  // of a lane that nobody is in
-  entries_.clear();
-}
-
-void LaneParameters::Set(int lane, const ParameterSet<double>& values,
-                         const std::vector<ColumnEntry>& entries) {
-  for (int i = 0; i < kLaneParameters; ++i) values_[i * width_ + lane] = values[i];
-  size_t k = 0;
-  for (const ColumnEntry& entry : entries) {
-    if (entry.parameter >= kLaneParameters) continue;  // acts on people who touch
-    if (k == entries_.size()) {
-      entries_.push_back({entry.column, entry.parameter});
-      slopes_.resize(entries_.size() * width_);
-    }
-    slopes_[k++ * width_ + lane] = entry.derivative;
-  }
-}
-
-void LaneParameters::In(LaneInputs* in) const {
-  in->parameters = values_.data();
-  in->slopes = slopes_.data();
-  in->entries = entries_.data();
-  in->num_entries = static_cast<int>(entries_.size());
-}
-
 int NumSteps(const Scene& scene, int frames) { return std::min(frames, scene.LastPushEnd() + 1); }
 
-LaneTables::LaneTables(const PersonLanes& lanes, int frames, int num_tails, int steps)
+LaneTables::LaneTables(const PersonLanes& lanes, int num_tails, int steps)
     : lanes_(&lanes),
-      frames_(frames),
       num_tails_(num_tails),
       num_steps_(steps),
       constants_(kLaneConstants * width(), 1.0),  // of a lane that nobody is in
@@ -88,7 +49,6 @@ LaneTables::LaneTables(const PersonLanes& lanes, int frames, int num_tails, int 
 
 void LaneTables::Set(int lane, const Scene& scene, const ModelOptions& options, int frames) {
   friction_ = options.friction;
-  cart_derivative_ = options.cart_derivative == CartDerivative::kBackward;
   const SelfForce self(options, scene.people[0].body, scene.people[0].start.q, scene.dt);
   Constant(kLaneMass, lane) = self.body.mass;
   Constant(kLaneRod, lane) = self.body.rod_length;
@@ -153,24 +113,63 @@ void LaneTables::SetTails(int lane, const Scene& scene, const ModelOptions& opti
   }
 }
 
-LaneInputs LaneTables::Inputs() const {
+void LaneTables::Roll(const LaneRequest& request, const std::vector<LanePerson>& people,
+                      LaneResults* results) const {
+  // A thread's own, used again.
+  thread_local std::vector<double> constants, parameters, slopes, storage;
+  thread_local std::vector<LaneEntry> entries;
+  const int lanes = width();
+  constants = constants_;
+  parameters.assign(kLaneParameters * lanes, 1.0);  // of a lane that nobody is in
+  entries.clear();
+  for (int lane = 0; lane < static_cast<int>(people.size()); ++lane) {
+    const LanePerson& person = people[lane];
+    for (int i = 0; person.velocity != nullptr && i < 4; ++i) {
+      constants[(kLaneStart + 4 + i) * lanes + lane] = person.velocity[i];
+    }
+    for (int i = 0; i < kLaneParameters; ++i) parameters[i * lanes + lane] = person.parameters[i];
+    size_t k = 0;
+    for (const ColumnEntry& entry : person.entries) {
+      if (entry.parameter >= kLaneParameters) continue;  // acts on people who touch
+      if (k == entries.size()) {
+        entries.push_back({entry.column, entry.parameter});
+        slopes.resize(entries.size() * lanes);
+      }
+      slopes[k++ * lanes + lane] = entry.derivative;
+    }
+  }
   LaneInputs in;
+  static_cast<LaneRequest&>(in) = request;
   in.friction = friction_;
-  in.cart_derivative = cart_derivative_;
-  in.frames = frames_;
-  in.num_steps = num_steps_;
+  in.num_entries = static_cast<int>(entries.size());
   in.num_tails = num_tails_;
-  in.constants = constants_.data();
+  in.num_steps = num_steps_;
+  in.entries = entries.data();
+  in.slopes = slopes.data();
+  in.constants = constants.data();
+  in.parameters = parameters.data();
   in.tails = tails_.data();
   in.steps = steps_.data();
-  return in;
-}
-
-void LaneTables::Roll(const LaneInputs& in, LaneSums sums, LaneOutputs out) const {
-  thread_local std::vector<double> storage;  // a thread's own, used again
-  storage.resize(LaneStorage(width(), in.columns, in.num_tails));
-  out.storage = storage.data();
-  lanes_->roll(in, sums, out);
+  const bool equations = in.sums == LaneSums::kPlain || in.sums == LaneSums::kRobust;
+  const int size = equations ? (in.columns + 1) * (in.columns + 1) * lanes : 0;
+  const auto room = [](std::vector<double>* values, int count) {
+    values->resize(count);
+    return values->data();
+  };
+  LaneOutputs out;
+  out.failed = room(&results->failed, lanes);
+  out.squares = room(&results->squares, lanes);
+  out.plain = room(&results->plain, size);
+  out.robust = room(&results->robust, in.sums == LaneSums::kRobust ? size : 0);
+  if (in.sums == LaneSums::kNone) {
+    out.residuals = room(&results->residuals, (in.frames - 1) * kFrameResiduals * lanes);
+  }
+  if (in.sums == LaneSums::kStates) {
+    const int states = std::max(0, in.frames - in.first_state);
+    out.states = room(&results->states, states * 8 * (1 + in.columns) * lanes);
+  }
+  out.storage = room(&storage, LaneStorage(lanes, in.columns, in.num_tails));
+  lanes_->roll(in, out);
 }
 
 }  // namespace pushid

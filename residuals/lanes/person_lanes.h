@@ -13,6 +13,7 @@
 #include "models/scene.h"
 #include "models/self_terms.h"
 #include "residuals/frame_residual.h"
+#include "residuals/kernels/vector_kernels.h"
 #include "residuals/parameter_map.h"
 
 namespace pushid {
@@ -25,11 +26,11 @@ enum LaneField {
   kLaneWeight = 11,   // on the residual
   kLanePush = 12,     // 4: generalized force
   kLaneActs = 16,     // 1 where the own forces act, 0 where the push replaces them
-  kLaneSlides = 17,   // the same of friction
+  kLaneSlides = 17,   // 1 where friction acts
   kLaneGoesOn = 18,   // 1 where the rollout has a next frame
   kLaneFields
 };
-// What is constant over a rollout.
+// Fields of one person.
 enum LaneConstant {
   kLaneMass = 0,
   kLaneRod,
@@ -52,14 +53,27 @@ struct LaneEntry {
   int parameter;
 };
 
-struct LaneInputs {
-  FrictionKind friction = FrictionKind::kIsotropic;
-  bool cart_derivative = false;
-  ResidualSigmas sigmas;
+enum class LaneSums {
+  kStates,   // no residuals: [q, qd] frame by frame, and its derivatives where there are columns
+  kNone,     // r alone, frame by frame from frame 1 on, without the robust loss's weight
+  kSquares,  // r'r alone
+  kPlain,    // [J r]'[J r]
+  kRobust    // and that with the robust loss's own Hessian (CorrectForRobustLoss)
+};
+
+// The rollouts that are asked for, and their numbers.
+struct LaneRequest {
+  LaneSums sums = LaneSums::kStates;
   int frames = 0;            // of the longest rollout
-  int first_state = 0;       // the first frame of those that kStates hands out
   int columns = 0;           // P
   int velocity_column = -1;  // as in SensitivityInputs
+  int first_state = 0;       // the first frame of those that kStates hands out
+  ResidualSigmas sigmas = {};
+};
+
+// The request with what LaneTables knows.
+struct LaneInputs : LaneRequest {
+  FrictionKind friction = FrictionKind::kIsotropic;
   int num_entries = 0, num_tails = 0;
   const LaneEntry* entries = nullptr;  // in ascending order of column
   const double* slopes = nullptr;      // of entries
@@ -70,89 +84,66 @@ struct LaneInputs {
   const double* steps = nullptr;       // num_steps x kLaneFields
 };
 
-enum class LaneSums {
-  kStates,   // no residuals: [q, qd] frame by frame, and its derivatives where there are columns
-  kNone,     // r alone, frame by frame from frame 1 on, without the robust loss's weight
-  kSquares,  // r'r alone
-  kPlain,    // [J r]'[J r]
-  kRobust    // and that with the robust loss's own Hessian (CorrectForRobustLoss)
-};
-
 struct LaneOutputs {
   double* failed = nullptr;     // 1 where a rollout left the domain
-  double* residuals = nullptr;  // (frames - 1) x kFrameResiduals, where nothing is summed up
   double* squares = nullptr;    // r'r
+  double* residuals = nullptr;  // (frames - 1) x kFrameResiduals, where nothing is summed up
   double* plain = nullptr;      // (P + 1) x (P + 1), the upper triangle
-  double* robust = nullptr;     // the same
+  double* robust = nullptr;     // as plain
   double* states = nullptr;     // (frames - first_state) x (1 + P) x 8; the last within the domain
-  double* storage = nullptr;    // LaneStorage; from LaneTables
+  double* storage = nullptr;    // LaneStorage
 };
 
 // Doubles that a rollout needs besides.
 constexpr int LaneStorage(int lanes, int columns, int tails) {
   const int size = columns + 1;
-  return lanes * (10 * columns + kFrameResiduals * size + 2 * size * size + 2 * tails + 1);
+  return lanes * (8 * columns + kFrameResiduals * size + 2 * size * size + 2 * tails + 1);
 }
 
 struct PersonLanes {
   int bits;  // of a vector
   int lanes;
-  void (*roll)(const LaneInputs& in, LaneSums sums, const LaneOutputs& out);
+  void (*roll)(const LaneInputs& in, const LaneOutputs& out);
 };
 
-// What this processor can run, the widest last; never empty.
-const std::vector<const PersonLanes*>& SupportedPersonLanes();
-const PersonLanes& BestPersonLanes();
+PUSHID_WIDTHS(PersonLanes);
+
 // The narrowest in which so many people have room; the widest where they do not.
 const PersonLanes& PersonLanesFor(int people);
-
-// By the bits of a vector, as VectorKernelsOf.
-template <int kBits>
-const PersonLanes& PersonLanesOf();
-template <>
-const PersonLanes& PersonLanesOf<128>();
-template <>
-const PersonLanes& PersonLanesOf<256>();
-template <>
-const PersonLanes& PersonLanesOf<512>();
 
 // Whether a scene can be rolled out so: one person, of sliding feet, with no force that remembers
 // or that a user brings.
 bool HasLanes(const Scene& scene, const ModelOptions& options);
 
-// The parameters of people in lanes, and what columns move of them.
-class LaneParameters {
- public:
-  explicit LaneParameters(int width = 0) { Clear(width); }
-  void Clear(int width);
-  // entries: in ascending order of column, of the same columns and parameters in every lane; none
-  // without derivatives.
-  void Set(int lane, const ParameterSet<double>& values, const std::vector<ColumnEntry>& entries);
-  void In(LaneInputs* in) const;
+// One person at a point.
+struct LanePerson {
+  ParameterSet<double> parameters;
+  // In ascending order of column, of the same columns and parameters in every lane; none without
+  // derivatives.
+  std::vector<ColumnEntry> entries;
+  const double* velocity = nullptr;  // at frame 0; null: the scene's
+};
 
- private:
-  int width_ = 0;
-  std::vector<double> values_, slopes_;
-  std::vector<LaneEntry> entries_;
+// The numbers that LaneOutputs has.
+struct LaneResults {
+  std::vector<double> failed, squares, residuals, plain, robust, states;
 };
 
 class LaneTables {
  public:
-  // frames, num_tails: the most that one of them has. steps: those that differ, where frames after
-  // are as the last of them.
-  LaneTables(const PersonLanes& lanes, int frames, int num_tails, int steps);
+  // num_tails: the most that one of them has. steps: those that differ, where frames after are as
+  // the last of them.
+  LaneTables(const PersonLanes& lanes, int num_tails, int steps);
 
   // Puts a scene into a lane. All lanes share their options but for the tail.
   void Set(int lane, const Scene& scene, const ModelOptions& options, int frames);
   void SetMeasured(int lane, int frame, const Vector3<double>& hip,
                    const PendulumState<double>& state, double weight);
 
-  // All but parameters, columns and sigmas.
-  LaneInputs Inputs() const;
-  const std::vector<double>& constants() const { return constants_; }
   int width() const { return lanes_->lanes; }
-  // All of `out` but its storage is the caller's.
-  void Roll(const LaneInputs& in, LaneSums sums, LaneOutputs out) const;
+  // people: one for each lane that is set.
+  void Roll(const LaneRequest& request, const std::vector<LanePerson>& people,
+            LaneResults* results) const;
 
  private:
   void SetSteps(int lane, const Scene& scene, const ModelOptions& options, int frames);
@@ -161,9 +152,8 @@ class LaneTables {
   double& Constant(int id, int lane) { return constants_[id * width() + lane]; }
 
   const PersonLanes* lanes_;
-  int frames_, num_tails_, num_steps_;
+  int num_tails_, num_steps_;
   FrictionKind friction_ = FrictionKind::kIsotropic;
-  bool cart_derivative_ = false;
   std::vector<double> constants_, steps_, tails_;
 };
 

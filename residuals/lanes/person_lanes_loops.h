@@ -1,9 +1,9 @@
 // residuals: the loops of person_lanes.h, for the file that includes this, which says
 //   PUSHID_VECTOR_DOUBLES      doubles in a vector
 //   PUSHID_LANE_SCALAR         the header with its scalar, where it is another (tests/benchmarks)
-// What is compiled here for wide vectors must not be linked to by other files: the scalar is a type
-// without linkage, so that every template of it has none either, and nothing else is called that
-// has an inline definition (tests/residuals/shared_code.sh looks into the objects).
+// Code that is compiled here for wide vectors must not be linked to by other files: the scalar is a
+// type without linkage, so that every template of it has none either, and nothing else is called
+// that has an inline definition (tests/residuals/shared_code.sh looks into the objects).
 #pragma once
 
 #ifndef PUSHID_LANE_SCALAR
@@ -31,13 +31,12 @@ Eigen::Matrix<Lanes, kSize, 1> LoadVector(const double* from) {
 // The derivatives that are carried from step to step, and what they are summed up to.
 struct Carried {
   Lanes* by_column = nullptr;   // P x 8: [q, qd]
-  Lanes* before = nullptr;      // P x 2: of the cart's velocity, one frame earlier
   Lanes* rows = nullptr;        // (P + 1) x kFrameResiduals: [J r] of one frame
   Lanes* plain = nullptr;       // (P + 1) x (P + 1)
-  Lanes* robust = nullptr;      // the same
+  Lanes* robust = nullptr;      // as plain
   Lanes* tails = nullptr;       // rate and decay of each
   double* residuals = nullptr;  // of LaneOutputs
-  double* states = nullptr;     // the same
+  double* states = nullptr;     // of LaneOutputs
 };
 
 // Lanes of which storage has room for, one after the other.
@@ -95,8 +94,7 @@ inline void AddGram(const Lanes* rows, int size, Lanes* gram) {
 
 class Roller {
  public:
-  Roller(const LaneInputs& in, LaneSums sums, const Carried& carried)
-      : in_(in), sums_(sums), carried_(carried) {
+  Roller(const LaneInputs& in, const Carried& carried) : in_(in), carried_(carried) {
     const double* const c = in.constants;
     const auto constant = [c](int id) { return LoadLanes(c + id * kWidth); };
     self_.body = {constant(kLaneMass), constant(kLaneRod), constant(kLaneHeight),
@@ -105,7 +103,6 @@ class Roller {
     self_.scale.stiffness = constant(kLaneScale + 1);
     self_.scale.damping = constant(kLaneScale + 2);
     self_.friction = in.friction;
-    self_.cart_derivative = in.cart_derivative;
     self_.posture = LoadVector<2>(c + kLanePosture * kWidth);
     self_.hold = LoadVector<2>(c + kLaneHold * kWidth);
     self_.dt = constant(kLaneStep);
@@ -114,10 +111,8 @@ class Roller {
     }
     state_.q = LoadVector<4>(c + kLaneStart * kWidth);
     state_.qd = LoadVector<4>(c + (kLaneStart + 4) * kWidth);
-    previous_ = state_.qd;
     for (int k = 0; k < in.num_tails; ++k) carried_.tails[2 * k] = Tail(k, 0).Rate(p_);
     if (CarriesColumns()) StartDerivatives();
-    columns_move_ = in.velocity_column >= 0;
   }
 
   void Roll() {
@@ -125,7 +120,7 @@ class Roller {
     for (int t = 0; t < in_.frames; ++t) {
       angles_ = Angles<Lanes>(state_.q);
       const double* const step = Step(t);
-      if (sums_ == LaneSums::kStates) {
+      if (in_.sums == LaneSums::kStates) {
         if (t >= in_.first_state) HandOut(t - in_.first_state);
       } else if (t > 0) {
         AddResidual(t, step);
@@ -160,16 +155,13 @@ class Roller {
   void StartDerivatives() {
     for (int c = 0; c < in_.columns; ++c) {
       for (int i = 0; i < 8; ++i) carried_.by_column[8 * c + i] = 0.0;
-      for (int i = 0; i < 2; ++i) carried_.before[2 * c + i] = 0.0;
     }
     for (int i = 0; in_.velocity_column >= 0 && i < 4; ++i) {
-      const int column = in_.velocity_column + i;
-      carried_.by_column[8 * column + 4 + i] = 1.0;
-      if (i < 2) carried_.before[2 * column + i] = 1.0;
+      carried_.by_column[8 * (in_.velocity_column + i) + 4 + i] = 1.0;
     }
     const int size = (in_.columns + 1) * (in_.columns + 1);
     for (int i = 0; carried_.plain != nullptr && i < size; ++i) carried_.plain[i] = 0.0;
-    for (int i = 0; sums_ == LaneSums::kRobust && i < size; ++i) carried_.robust[i] = 0.0;
+    for (int i = 0; in_.sums == LaneSums::kRobust && i < size; ++i) carried_.robust[i] = 0.0;
   }
 
   TailOf<Lanes> Tail(int k, int frame) const {
@@ -185,7 +177,7 @@ class Roller {
   void StepOn(int t, const double* step, Bits* alive) {
     const Lanes acts = LoadLanes(step + kLaneActs * kWidth);
     const Lanes slides = LoadLanes(step + kLaneSlides * kWidth);
-    Force force = self_.Balance(p_, state_, previous_) + self_.Linear(p_, state_);
+    Force force = self_.Balance(p_, state_, state_.qd) + self_.Linear(p_, state_);
     for (int k = 0; k < in_.num_tails; ++k) {
       const TailOf<Lanes> tail = Tail(k, t);
       Lanes* const rate_and_decay = carried_.tails + 2 * k;
@@ -204,15 +196,7 @@ class Roller {
     const Bits outside = Outside(next);
     failed_ = Select(*alive & outside, 1.0, failed_);
     *alive &= ~outside;
-    if (!columns_move_) {
-      double acting[kWidth];
-      Store(acts + slides, acting);
-      for (double each : acting) columns_move_ = columns_move_ || each > 0.0;
-    }
-    if (CarriesColumns() && columns_move_) {
-      CarryOn(t, acts, slides, a, Select(*alive, self_.dt, 0.0) * inverse);
-    }
-    previous_ = state_.qd;
+    if (CarriesColumns()) CarryOn(t, acts, slides, a, Select(*alive, self_.dt, 0.0) * inverse);
     for (int i = 0; i < 4; ++i) {
       state_.q[i] = Select(*alive, next.q[i], state_.q[i]);
       state_.qd[i] = Select(*alive, next.qd[i], state_.qd[i]);
@@ -243,13 +227,6 @@ class Roller {
         force += (LoadLanes(slope) * Acting(entry->parameter, acts, slides)) *
                  jacobian_.by_parameter.col(entry->parameter);
       }
-      if (in_.cart_derivative) {
-        for (int i = 0; i < 2; ++i) {
-          Lanes& before = carried_.before[2 * c + i];
-          force[i] += jacobian_.by_previous[i] * before;
-          before = s[4 + i];
-        }
-      }
       force += by_state * Eigen::Map<const Eigen::Matrix<Lanes, 6, 1>>(s + 2);
       for (int r = 0; r < 4; ++r) {
         for (int k = 0; k < 4; ++k) s[4 + r] += inverse(r, k) * force[k];
@@ -267,13 +244,12 @@ class Roller {
     jacobian_.by_parameter.middleCols<kOfTails>(kTailGain).setZero();  // others are written again
     AddFrictionJacobian(self_, p_, state_.qd, &jacobian_);
     const Eigen::Matrix<Lanes, 2, 2> alone = (slides - acts) * jacobian_.by_state.block<2, 2>(0, 4);
-    AddControlJacobian(self_, p_, state_, previous_, &jacobian_);
+    AddControlJacobian(self_, p_, state_, state_.qd, &jacobian_);
     for (int k = 0; k < in_.num_tails; ++k) {
       const Lanes* const rate_and_decay = carried_.tails + 2 * k;
       AddTailJacobian(Tail(k, t), p_, rate_and_decay[0], rate_and_decay[1],
                       &jacobian_.by_parameter);
     }
-    jacobian_.by_previous *= acts;
     Eigen::Matrix<Lanes, 4, 6> by_state = acts * jacobian_.by_state.rightCols<6>();
     by_state.block<2, 2>(0, 2) += alone;
     return by_state;
@@ -294,7 +270,7 @@ class Roller {
     const Lanes weight = LoadLanes(step + kLaneWeight * kWidth);
     const FrameVector<Lanes> r =
         RawFrameResidual(self_.body, state_, angles_, Measured(step), in_.sigmas);
-    if (sums_ == LaneSums::kNone) {
+    if (in_.sums == LaneSums::kNone) {
       double* const to = carried_.residuals + (t - 1) * kFrameResiduals * kWidth;
       for (int k = 0; k < kFrameResiduals; ++k) Store(weight * r[k], to + k * kWidth);
       return;
@@ -306,11 +282,6 @@ class Roller {
     if (!CarriesColumns()) return;
     for (int k = 0; k < kFrameResiduals; ++k) {
       carried_.rows[kFrameResiduals * in_.columns + k] = scale * r[k];
-    }
-    if (!columns_move_) {  // in the same order as below, whoever else is there
-      AddSquares(carried_.plain);
-      if (sums_ == LaneSums::kRobust) AddSquares(carried_.robust);
-      return;
     }
     const Eigen::Matrix<Lanes, kFrameResiduals, 8> j = ByState();
     const auto at = [&](int row, int column) { return scale * j(row, column); };
@@ -332,7 +303,7 @@ class Roller {
       for (int k = 0; k < kFrameResiduals; ++k) to[k] = row[k] + r[k] * along;
     }
     AddGram(carried_.rows, in_.columns + 1, carried_.plain);
-    if (sums_ != LaneSums::kRobust) return;
+    if (in_.sums != LaneSums::kRobust) return;
     if (in_.sigmas.robust > 0.0) Correct(robust.w * robust.w * squares, weight);
     AddGram(carried_.rows, in_.columns + 1, carried_.robust);
   }
@@ -355,10 +326,6 @@ class Roller {
     return j;
   }
 
-  void AddSquares(Lanes* gram) const {
-    AddGramBlock<1, 1>(carried_.rows, in_.columns + 1, in_.columns, in_.columns, gram);
-  }
-
   // CorrectForRobustLoss; squares: |w r|^2 without the weight.
   void Correct(Lanes squares, Lanes weight) {
     const RobustHessian<Lanes> factor(squares, in_.sigmas.robust);
@@ -375,47 +342,45 @@ class Roller {
   }
 
   const LaneInputs& in_;
-  const LaneSums sums_;
   const Carried carried_;
   SelfTerms<Lanes> self_;
   ParameterSet<Lanes> p_{};
   PendulumState<Lanes> state_;
-  Vector4<Lanes> previous_;
   Angles<Lanes> angles_;
   SelfJacobian<Lanes> jacobian_;
   Lanes failed_ = 0.0, squares_ = 0.0;
-  bool columns_move_ = false;  // a column may have moved some state
 };
 
-void RollLanes(const LaneInputs& in, LaneSums sums, const LaneOutputs& out) {
+void RollLanes(const LaneInputs& in, const LaneOutputs& out) {
   Room room(out.storage);
   const int columns = in.columns, size = (columns + 1) * (columns + 1);
-  const bool equations = sums == LaneSums::kPlain || sums == LaneSums::kRobust;
+  const bool equations = in.sums == LaneSums::kPlain || in.sums == LaneSums::kRobust;
   Carried carried;
   carried.residuals = out.residuals;
   carried.states = out.states;
-  if (sums == LaneSums::kStates && columns > 0) {
+  if (equations || (in.sums == LaneSums::kStates && columns > 0)) {
     carried.by_column = room.Take(8 * columns);
-    carried.before = room.Take(2 * columns);
-  } else if (equations) {
-    carried = {room.Take(8 * columns), room.Take(2 * columns),
-               room.Take(kFrameResiduals * (columns + 1)), room.Take(size), room.Take(size)};
+  }
+  if (equations) {
+    carried.rows = room.Take(kFrameResiduals * (columns + 1));
+    carried.plain = room.Take(size);
+    carried.robust = room.Take(size);
   }
   carried.tails = room.Take(2 * in.num_tails);
-  Roller roller(in, sums, carried);
+  Roller roller(in, carried);
   roller.Roll();
   Store(roller.failed(), out.failed);
   Store(roller.squares(), out.squares);
   for (int i = 0; equations && i < size; ++i) {
     Store(carried.plain[i], out.plain + i * kWidth);
-    if (sums == LaneSums::kRobust) Store(carried.robust[i], out.robust + i * kWidth);
+    if (in.sums == LaneSums::kRobust) Store(carried.robust[i], out.robust + i * kWidth);
   }
 }
 
 }  // namespace
 
 template <>
-const PersonLanes& PersonLanesOf<PUSHID_WIDTH>() {
+const PersonLanes& OfWidth<PersonLanes, PUSHID_WIDTH>() {
   static constexpr PersonLanes lanes = {PUSHID_WIDTH, kWidth, RollLanes};
   return lanes;
 }

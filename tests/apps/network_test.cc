@@ -32,20 +32,20 @@ TEST_F(NetworkAppTest, EveryProgramTakesANetwork) {
 
 TEST_F(NetworkAppTest, ARodThatMovesGoesThroughEveryProgram) {
   const std::string model =
-      "--model=" + FitModel("model.json", {"--self_force=mlp:2", "--rod=linear"});
-  EXPECT_EQ(Json(Path("model.json")).at("self_network").at("rod").at("kind"), "linear");
-  EXPECT_EQ(Json(Path("model.json")).at("self_network").at("weights").size(), 24u + 11u);
+      "--model=" + FitModel("model.json", {"--self_force=mlp:2", "--rod=ldp:2"});
+  EXPECT_EQ(Json(Path("model.json")).at("self_network").at("rod").at("kind"), "ldp");
+  EXPECT_EQ(Json(Path("model.json")).at("self_network").at("weights").size(), 24u + 29u);
   Succeeded(RunApp("pushid-report", {model, Recordings(), "--html_out=" + Path("report.html")}));
   Succeeded(RunApp("pushid-evaluate", {model, Recordings()}));
   Succeeded(
       RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--out=" + Path("path.csv")}));
-  EXPECT_TRUE(Contains(ReadText(Path("report.html")), "network mlp:2 and rod linear"));
+  EXPECT_TRUE(Contains(ReadText(Path("report.html")), "network mlp:2 and rod ldp:2"));
   EXPECT_TRUE(Contains(ReadText(Path("path.csv")), ",rod_length_m,cart_height_m"));
 }
 
 // The hip of a restored body is the tip of the rod as it is in that frame.
 TEST_F(NetworkAppTest, BodiesFollowARodThatMoves) {
-  const std::string model = "--model=" + FitModel("model.json", {"--rod=linear"});
+  const std::string model = "--model=" + FitModel("model.json", {"--rod=ldp:2"});
   Succeeded(RunApp("pushid-predict",
                    {model, Recordings(), "--id=" + id_, "--restoration=rigid", "--postprocess=none",
                     "--out=" + Path("path.csv"), "--poses_out=" + Path("b.csv")}));

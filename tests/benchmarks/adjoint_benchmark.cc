@@ -23,8 +23,8 @@ const LearnedTerms& Network(int64_t index) {
       {{NetworkKind::kMlp, 4}, {}},
       {{NetworkKind::kLdp, 64, 16}, {}},
       {{NetworkKind::kLdp, 256, 32}, {}},
-      {{}, {}, {RodKind::kMlp, hidden}},
-      {{NetworkKind::kLdp, 256, 32}, {}, {RodKind::kMlp, hidden}}};
+      {{}, {}, {RodKind::kLdp, hidden}},
+      {{NetworkKind::kLdp, 256, 32}, {}, {RodKind::kLdp, hidden}}};
   return networks[index];
 }
 

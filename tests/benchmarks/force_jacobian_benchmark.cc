@@ -1,5 +1,5 @@
 // The derivatives of force terms that are written out for lanes (residuals/lanes) against what a
-// formula gives by itself: dual numbers or Jets over the term's own inputs. A hand-written one
+// formula gives by itself: jets over the term's own inputs. A hand-written one
 // stays where this shows that it pays; force_jacobians.h quotes the factors.
 //   pushid-benchmarks --benchmark_filter='Jacobian_'
 #include <benchmark/benchmark.h>
@@ -47,10 +47,10 @@ void Jacobian_OfSelfForce_Written(benchmark::State& state) {
 BENCHMARK(Jacobian_OfSelfForce_Written)->Unit(benchmark::kNanosecond);
 
 // [theta, phi, qd, the cart's velocity before, parameters].
-void Jacobian_OfSelfForce_ByDuals(benchmark::State& state) {
+void Jacobian_OfSelfForce_ByJets(benchmark::State& state) {
   Walker walker(1);
   const SelfForce self({}, {80.0, 0.95, 0.0}, Vector4<double>::Zero(), kDt);
-  using D = Dual<double, 8 + kSelfParameters>;
+  using D = JetOf<double, 8 + kSelfParameters>;
   for (auto _ : state) {
     benchmark::DoNotOptimize(walker);
     ParameterSet<D> p;
@@ -60,10 +60,10 @@ void Jacobian_OfSelfForce_ByDuals(benchmark::State& state) {
     for (int i = 0; i < 4; ++i) at.qd[i] = D::Input(walker.state.qd[i], 2 + i);
     for (int i = 0; i < 2; ++i) previous[i] = D::Input(walker.previous[i], 6 + i);
     for (int i = 0; i < kSelfParameters; ++i) p[i] = D::Input(walker.p[i], 8 + i);
-    benchmark::DoNotOptimize(self.Total(p, at, previous));
+    benchmark::DoNotOptimize(Vector4<D>(self.Friction(p, at.qd) + self.Effort(p, at, previous)));
   }
 }
-BENCHMARK(Jacobian_OfSelfForce_ByDuals)->Unit(benchmark::kNanosecond);
+BENCHMARK(Jacobian_OfSelfForce_ByJets)->Unit(benchmark::kNanosecond);
 
 ScenePush NetPush() {
   return MakeScenePush(0, 0, PushKind::kNet,

@@ -44,7 +44,7 @@ double PeakRate(const VectorKernels& kernels) {
 // Arguments: the preset (0: tail, 1: ldp), the width.
 template <LaneSums kSums>
 void SumsSideBySide(benchmark::State& state) {
-  if (state.range(1) >= static_cast<int>(SupportedPersonLanes().size())) {
+  if (state.range(1) >= static_cast<int>(Supported<PersonLanes>().size())) {
     state.SkipWithError("this processor has no such vectors");
     return;
   }
@@ -76,10 +76,10 @@ void SumsSideBySide(benchmark::State& state) {
     }
   };
   counted = {};
-  evaluate(groups(PersonLanesOf<PUSHID_WIDTH>()), 1);
+  evaluate(groups(OfWidth<PersonLanes, PUSHID_WIDTH>()), 1);
   const double operations = static_cast<double>(counted.sums_and_products);
-  const PersonLanes& lanes = *SupportedPersonLanes()[state.range(1)];
-  const double peak = PeakRate(*SupportedVectorKernels()[state.range(1)]);
+  const PersonLanes& lanes = *Supported<PersonLanes>()[state.range(1)];
+  const double peak = PeakRate(*Supported<VectorKernels>()[state.range(1)]);
   const std::vector<LaneGroup> all = groups(lanes);
   for (auto _ : state) evaluate(all, lanes.lanes);
   size_t frames = 0;

@@ -95,7 +95,7 @@ void AddConfidence(FittedModel* model) {
 }
 
 void AddNetworks(FitResult* result) {
-  result->options.model.learned = InitialNetwork({NetworkKind::kMlp, 2}, 1, {RodKind::kMlp, {2}});
+  result->options.model.learned = InitialNetwork({NetworkKind::kMlp, 2}, 1, {RodKind::kLdp, {2}});
 }
 
 }  // namespace

@@ -26,14 +26,11 @@ struct Study {
   FitOptions options;
 };
 
-// lift: of the cart, where the network moves the rod.
-inline Study PlantedStudy(std::shared_ptr<const LearnedTerms> planted, double noise,
-                          double lift = 0.0) {
+inline Study PlantedStudy(std::shared_ptr<const LearnedTerms> planted, double noise) {
   SyntheticOptions synthetic;
   synthetic.frames = 60;
   synthetic.joint_noise_m = noise;
   synthetic.model.learned = std::move(planted);
-  synthetic.parameters[kRodLift] = lift;
   Study study;
   const std::vector<PendulumRecording> all = MakePendulums(synthetic);
   for (size_t i = 0; i < all.size(); ++i) {

@@ -9,6 +9,7 @@
 #include "datasets/files/random.h"
 #include "models/ipm.h"
 #include "models/parameters.h"
+#include "models/self_force.h"
 
 namespace pushid {
 
@@ -51,6 +52,13 @@ void ExpectClose(const A& actual, const B& expected, double tolerance, double sc
           << "row " << i << ", column " << j;
     }
   }
+}
+
+// All of a person's own force: friction, and what the person does.
+template <typename T>
+Vector4<T> OwnForce(const SelfForce& self, const ParameterSet<T>& p, const PendulumState<T>& state,
+                    const Vector4<T>& qd_previous) {
+  return self.Friction(p, state.qd) + self.Effort(p, state, qd_previous);
 }
 
 }  // namespace pushid

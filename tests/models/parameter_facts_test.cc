@@ -75,12 +75,6 @@ TEST(ParameterFacts, ActWhereTheirTermsAre) {
   EXPECT_EQ(adds([](ModelOptions* m) { m->interaction.ldp_published = true; }),
             (Names{"potential_strength", "potential_length", "neighbour_range", "lean_theta",
                    "lean_phi"}));
-  EXPECT_EQ(adds([](ModelOptions* m) {
-              LearnedTerms network;
-              network.rod.kind = RodKind::kLinear;
-              m->learned = std::make_shared<const LearnedTerms>(network);
-            }),
-            Names{"rod_lift"});
   EXPECT_FALSE(Acts(static_cast<Parameter>(kFirstOwnParameter), none));
 }
 
@@ -113,11 +107,12 @@ TEST(InteractionTerms, EverySwitchActsSomewhere) {
 }
 
 TEST(ForceParts, HaveNamesOfTheirOwnAndOwnIsTheLast) {
-  std::set<std::string_view> names(std::begin(kForcePartNames), std::end(kForcePartNames));
+  std::set<std::string_view> names;
+  for (const auto& part : kForceParts) names.insert(part.name);
   EXPECT_EQ(names.size(), static_cast<size_t>(kNumForceParts));
   EXPECT_EQ(NameOf(ForcePart::kInteraction), "interaction");
-  EXPECT_EQ(kForceParts[kNumForceParts - 2], ForcePart::kOwn);
-  EXPECT_EQ(kForceParts.back(), ForcePart::kInertia);
+  EXPECT_EQ(kForceParts[kNumForceParts - 2].value, ForcePart::kOwn);
+  EXPECT_EQ(kForceParts.back().value, ForcePart::kInertia);
 }
 
 }  // namespace

@@ -238,7 +238,7 @@ TEST(Rollout, MatchesStepsByHand) {
   PendulumState<double> state = scene.people[0].start, before = state;
   const SelfForce self = SelfForces(scene, options)[0];
   for (int t = 0; t + 1 < 40; ++t) {
-    const Vector4<double> force = self.Total(p[0], state, before.qd) + PushForceAt(scene, 0, t);
+    const Vector4<double> force = OwnForce(self, p[0], state, before.qd) + PushForceAt(scene, 0, t);
     before = state;
     state = Step(state, Acceleration(scene.people[0].body, state, force), scene.dt);
     ExpectClose(path.At(t + 1, 0).q, state.q, 1e-13);

@@ -51,8 +51,8 @@ TEST(SelfForce, TurnedPhysicsGivesTurnedForces) {
     const PendulumState<double> state = RandomState(&random);
     const Vector4<double> previous = RandomVector(&random, 3.0);
     const PendulumState<double> turned{Turn(state.q), Turn(state.qd)};
-    ExpectClose(turned_self.Total(p, turned, Turn(previous)), Turn(self.Total(p, state, previous)),
-                1e-12, 10.0);
+    ExpectClose(OwnForce(turned_self, p, turned, Turn(previous)),
+                Turn(OwnForce(self, p, state, previous)), 1e-12, 10.0);
   }
 }
 
@@ -69,7 +69,8 @@ TEST(SelfForce, ParametersAlongYActOnYAndPhiAlone) {
   const auto moved_by = [&](Parameter i) {
     ParameterSet<double> more = p;
     more[i] += 1.0;
-    return Vector4<double>(self.Total(more, state, previous) - self.Total(p, state, previous));
+    return Vector4<double>(OwnForce(self, more, state, previous) -
+                           OwnForce(self, p, state, previous));
   };
   for (Parameter i : {kMu, kKpX, kKpTheta, kKdX, kKdTheta, kAx, kBx, kTx}) {
     EXPECT_EQ(moved_by(i)[1], 0.0) << kParameterNames[i];
@@ -121,7 +122,7 @@ TEST(SelfForce, HeldPostureNeedsNoGain) {
   const PendulumState<double> start{{0.3, -0.2, 0.1, -0.05}, Vector4<double>::Zero()};
   const SelfForce self(options, body, start.q, kSampleDt);
   const Vector4<double> force =
-      self.Total(RandomParameters(&random), start, Vector4<double>(Vector4<double>::Zero()));
+      OwnForce(self, RandomParameters(&random), start, Vector4<double>(Vector4<double>::Zero()));
   ExpectClose(Acceleration(body, start, force), Vector4<double>(Vector4<double>::Zero()), 1e-13);
 }
 

@@ -4,7 +4,7 @@
 
 #include <ceres/jet.h>
 
-#include "models/modal_stability.h"
+#include "models/rollout.h"
 #include "residuals/jets/autodiff_rollout.h"
 #include "tests/models/model_samples.h"
 #include "tests/residuals/residual_samples.h"
@@ -111,7 +111,7 @@ TEST(OwnLaw, SensitivitiesAreThoseOfJets) {
   for (const bool learned : {false, true}) {
     ModelOptions options;
     if (learned) {
-      options = WithNetwork({NetworkKind::kMlp, 3}, 0.1, &random, {RodKind::kLinear, {}});
+      options = WithNetwork({NetworkKind::kMlp, 3}, 0.1, &random, {RodKind::kLdp, {2}});
     } else {
       options.interaction.spring = options.interaction.damping = true;
     }

@@ -52,7 +52,7 @@ void ExpectCorrectSelfJacobian(const ModelOptions& options, double magnitude, Ra
   AddFrictionJacobian(self, values, at.qd, &jacobian);
   ExpectClose(Flat(jacobian), Derivatives(self.Friction(p, state.qd)), 1e-12);
   AddControlJacobian(self, values, at, before, &jacobian);
-  ExpectClose(Flat(jacobian), Derivatives(self.Total(p, state, previous)), 1e-12);
+  ExpectClose(Flat(jacobian), Derivatives(OwnForce(self, p, state, previous)), 1e-12);
 }
 
 class SelfForceJacobian : public testing::TestWithParam<double> {};

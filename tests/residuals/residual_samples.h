@@ -29,7 +29,6 @@ inline ParameterSet<double> RecoveringParameters() {
   p[kContactDamping] = 100.0, p[kContactHeight] = 0.5;
   p[kPotentialStrength] = 120.0, p[kPotentialLength] = 0.4, p[kNeighbourRange] = 0.9;
   p[kLeanTheta] = 30.0, p[kLeanPhi] = 20.0;
-  p[kRodLift] = 0.8;
   p[kSupportFront] = 0.1, p[kSupportBack] = 0.07, p[kSupportSide] = 0.04, p[kFootFront] = 0.18;
   p[kStepGain] = 1.0, p[kStepOnset] = 0.25, p[kStepSwing] = 0.3;
   p[kComHeight] = 1.07;
@@ -168,10 +167,9 @@ inline PendulumRecording RecordRollout(const Scene& scene, const ModelOptions& o
     recording.states.emplace_back();
     recording.hip.emplace_back();
     recording.rod_length.emplace_back();
-    const double lift = truth[truth.size() == 1 ? 0 : n][kRodLift];
     for (int t = 0; t < num_frames; ++t) {
       const PendulumState<double>& state = path.At(t, n);
-      const Body now = BodyNow(body, state.rod, lift);
+      const Body now = BodyNow(body, state.rod);
       recording.states[n].push_back(state);
       recording.hip[n].push_back(HipPosition(now, state.q));
       recording.rod_length[n].push_back(now.rod_length);

@@ -3,7 +3,7 @@
 summary  the first page's table of errors on folds (README.md)
 schemes  `tail` and `ldp` beside baselines, three ways of holding out (ident/validation/README.md); half a minute
 changes  what was tried on top of `tail`, paired differences (ident/validation/README.md); half a minute
-networks learned forces and rods on top of `tail`, 4 folds (ident/validation/README.md); ten minutes
+networks learned forces on top of `tail`, 4 folds (ident/validation/README.md); ten minutes
 bands    how often predictive bands hold what was not fitted (ident/validation/README.md); ten seconds
 
 Times are those of one core. All on the 32 recordings, 5 x 4 folds unless it says otherwise.
@@ -16,8 +16,7 @@ LDP = [("`--preset=ldp`", "--preset=ldp")]
 CHANGES = ["--preset_priors=false", "--posture=upright", "--self_force=linear",
            "--fix=Kp_theta=1500,tail_gain=1,tail_time=0.2", "--push_tail=none"]
 # Networks trained by their gradient take hours here.
-NETWORKS = ["--self_force=mlp:4 --network_prior=0.5", "--rod=linear",
-            "--rod=linear --network_prior=0", "--rod=mlp:4 --network_prior=10"]
+NETWORKS = ["--self_force=mlp:4 --network_prior=0.5"]
 SCHEMES = [("stratified", "5 x 4 folds"), ("subject", "one person"), ("strong", "strong pushes")]
 
 

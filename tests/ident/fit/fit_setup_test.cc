@@ -95,8 +95,7 @@ TEST(FitSetup, StanceBringsWhatGoesWithIt) {
   for (Parameter id : {kTailTorque, kSupportBack}) {
     EXPECT_FALSE(holds.table[id].free) << holds.table[id].name;
   }
-  for (const auto& [flag, value] :
-       {std::pair("rod", "linear"), std::pair("self_force", "ldp:64")}) {
+  for (const auto& [flag, value] : {std::pair("rod", "ldp:4"), std::pair("self_force", "ldp:64")}) {
     EXPECT_TRUE(Contains(Complaint({{"preset", "tail"}, {"stance", "steps"}, {flag, value}}),
                          "is for feet that slide"))
         << flag;

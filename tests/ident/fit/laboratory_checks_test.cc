@@ -64,7 +64,7 @@ TEST(LaboratoryChecks, PlatformsAreNoSingleSteps) {
 TEST(LaboratoryChecks, RodsThatMove) {
   FitOptions options = WithTable();
   LearnedTerms learned;
-  learned.rod.kind = RodKind::kLinear;
+  learned.rod.kind = RodKind::kLdp;
   options.model.learned = std::make_shared<const LearnedTerms>(learned);
   ASSERT_TRUE(RodMoves(options.model));
   EXPECT_TRUE(Contains(Refused(OnPlatform(0.0), options), "no law of --rod"));

@@ -155,7 +155,7 @@ TEST(LearnedInteraction, ComesBackFromItsFile) {
   EXPECT_EQ(rows.HeldOutAde(read.fit), rows.HeldOutAde(fitted));
   nlohmann::ordered_json without = json;
   without["self_network"].erase("interaction");
-  without["self_network"]["rod"]["kind"] = "linear";
+  without["self_network"]["rod"]["kind"] = "mlp";
   EXPECT_FALSE(FittedModelFromJson(without, "model.json").ok());
   nlohmann::ordered_json other = json;
   other["model"]["interaction"] = "spring,damping,network:4";
@@ -187,8 +187,8 @@ TEST(LearnedInteraction, ByName) {
   const FitOptions changed =
       MakeFitOptions({{"preset", "ldp_published_groups"}, {"interaction", "contact"}}).value();
   EXPECT_FALSE(changed.model.learned->pair.any());
-  EXPECT_EQ(LearnedName(*InitialNetwork({NetworkKind::kMlp, 4}, 1, {RodKind::kLinear, {}}, {{4}})),
-            "mlp:4 and rod linear and interaction network:4");
+  EXPECT_EQ(LearnedName(*InitialNetwork({NetworkKind::kMlp, 4}, 1, {RodKind::kLdp, {3}}, {{4}})),
+            "mlp:4 and rod ldp:3 and interaction network:4");
 }
 
 }  // namespace

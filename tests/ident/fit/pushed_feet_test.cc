@@ -50,7 +50,7 @@ TEST(FitSetup, FeetTellTheStance) {
   EXPECT_EQ(stance(0, {{"preset", "ldp"}}), Stance::kSlide);
   EXPECT_EQ(stance(0, {{"likelihood", "innovation"}}), Stance::kSlide);
   EXPECT_EQ(stance(0, {{"free", "mu"}}), Stance::kSlide);
-  EXPECT_EQ(stance(0, {{"rod", "linear"}}), Stance::kSlide);
+  EXPECT_EQ(stance(0, {{"rod", "ldp:4"}}), Stance::kSlide);
 }
 
 TEST(FitSetup, FeetThatStepHaveNoLinearSelfForcesNorTheirDemand) {

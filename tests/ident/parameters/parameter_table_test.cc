@@ -56,7 +56,6 @@ TEST(Presets, LdpAsPublished) {
     EXPECT_EQ(o.table[kKpTheta].nominal, 1500.0);
     EXPECT_NEAR(60.0 * o.table[kKdTheta].nominal, 200.0, 1e-12) << "per frame";
     EXPECT_NEAR(60.0 * o.table[kKdX].nominal, 4.0, 1e-12);
-    EXPECT_EQ(o.table[kRodLift].nominal, 0.0) << "the cart keeps its height";
     EXPECT_EQ(o.model.push, PushUse::kAdded);
     EXPECT_EQ(o.model.posture, Posture::kUpright);
     EXPECT_EQ(o.sigmas.loss, FrameLoss::kLdp);

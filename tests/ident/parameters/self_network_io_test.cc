@@ -50,22 +50,21 @@ TEST(SelfNetworkIo, StartsWithoutForceAndFromItsSeed) {
 }
 
 TEST(SelfNetworkIo, RodsAreReadAndWritten) {
-  for (const char* text : {"constant", "linear", "mlp:4", "mlp:256-128-256", "ldp:256-128-256"}) {
+  for (const char* text : {"constant", "ldp:4", "ldp:256-128-256"}) {
     const auto shape = ParseRod("--rod", text);
     ASSERT_TRUE(shape.ok()) << text;
     EXPECT_EQ(RodName(shape.value()), text);
   }
-  EXPECT_EQ(RodName(ParseRod("f", "mlp").value()), "mlp:4");
   EXPECT_EQ(RodName(ParseRod("f", "ldp").value()), "ldp:128-128");
-  for (const char* text : {"", "none", "gru:4", "linear:4", "constant:1", "mlp:", "mlp:0", "mlp:4-",
-                           "mlp:-4", "mlp:4--4", "mlp:4:4", "mlp:99999", "mlp:1-1-1-1-1-1-1-1-1"}) {
+  for (const char* text : {"", "none", "linear", "mlp:4", "constant:1", "ldp:", "ldp:0", "ldp:4-",
+                           "ldp:-4", "ldp:4--4", "ldp:4:4", "ldp:99999", "ldp:1-1-1-1-1-1-1-1-1"}) {
     EXPECT_TRUE(Contains(ProblemOf(ParseRod("--rod", text)), "--rod is '" + std::string(text)));
   }
 }
 
 TEST(SelfNetworkIo, RodsStartConstantAndBesideTheSelfForce) {
   const NetworkShape shape{NetworkKind::kMlp, 2};
-  const RodShape rod{RodKind::kMlp, {3, 2}};
+  const RodShape rod{RodKind::kLdp, {3, 2}};
   const auto both = InitialNetwork(shape, 5, rod);
   const std::vector<double> self = InitialWeights(shape, 5);
   ASSERT_EQ(static_cast<int>(both->weights.size()), shape.num_weights() + rod.num_weights());
@@ -75,15 +74,15 @@ TEST(SelfNetworkIo, RodsStartConstantAndBesideTheSelfForce) {
   }
   EXPECT_NE(both->weights[both->rod_at()], 0.0);
   EXPECT_NE(both->weights[both->rod_at()], self[0]);
-  EXPECT_EQ(LearnedName(*both), "mlp:2 and rod mlp:3-2");
-  EXPECT_EQ(LearnedName(*InitialNetwork({}, 5, rod)), "rod mlp:3-2");
+  EXPECT_EQ(LearnedName(*both), "mlp:2 and rod ldp:3-2");
+  EXPECT_EQ(LearnedName(*InitialNetwork({}, 5, rod)), "rod ldp:3-2");
 }
 
 TEST(SelfNetworkIo, FilesKeepEverything) {
-  const RodShape linear{RodKind::kLinear, {}}, mlp{RodKind::kMlp, {3, 2}};
+  const RodShape rod{RodKind::kLdp, {3, 2}};
   for (const LearnedTerms& network :
-       {*InitialNetwork({NetworkKind::kMlp, 3}, 1, mlp), *InitialNetwork({}, 2, linear),
-        *InitialNetwork({}, 3, mlp), *InitialNetwork({NetworkKind::kMlp, 2}, 4),
+       {*InitialNetwork({NetworkKind::kMlp, 3}, 1, rod), *InitialNetwork({}, 3, rod),
+        *InitialNetwork({NetworkKind::kMlp, 2}, 4),
         *InitialNetwork({NetworkKind::kLdp, 2, 3}, 5, {RodKind::kLdp, {3}}, {{4}, true})}) {
     const auto read = LearnedFromJson(nlohmann::ordered_json::parse(ToJson(network).dump()));
     EXPECT_EQ(LearnedName(*read), LearnedName(network));
@@ -113,9 +112,9 @@ TEST(SelfNetworkIo, DamageIsNamed) {
   using Rod = nlohmann::ordered_json;
   for (const Rod& rod :
        {Rod{{"kind", "linear"}, {"hidden", Rod::array()}},
-        Rod{{"kind", "mlp"}, {"hidden", Rod::array()}}, Rod{{"kind", "linear"}, {"hidden", {2}}},
-        Rod{{"kind", "mlp"}, {"hidden", {0}}}, Rod{{"kind", "gru"}, {"hidden", {2}}},
-        Rod{{"kind", "mlp"}}}) {
+        Rod{{"kind", "ldp"}, {"hidden", Rod::array()}}, Rod{{"kind", "constant"}, {"hidden", {2}}},
+        Rod{{"kind", "ldp"}, {"hidden", {0}}}, Rod{{"kind", "mlp"}, {"hidden", {2}}},
+        Rod{{"kind", "ldp"}}}) {
     EXPECT_ANY_THROW(LearnedFromJson(broken("rod", rod))) << rod;
   }
 }

@@ -127,10 +127,9 @@ TEST_F(TrajectoryCsv, ARodThatMoves) {
   const PendulumRecording recording = MakePendulums(study)[0];
   IdentifiedModel model = TruthOf(study);
   LearnedTerms network;
-  network.rod.kind = RodKind::kLinear;
-  network.weights = {0, 0, -0.5, 0, 0, 0, 0, 0, 0, 0, -1};
+  network.rod = {RodKind::kLdp, {1}};
+  network.weights = {0, 0, -0.5, 0, 0, 0, 0, 0, 0, 0, 0, 0, 20, 1, -20};
   model.options.learned = std::make_shared<LearnedTerms>(network);
-  model.parameters[kRodLift] = 0.6;
   const Prediction p = Predict(model, recording);
   ASSERT_TRUE(p.status.ok);
   ASSERT_FALSE(WriteTrajectoryCsv(Path("t.csv"), recording, p));
@@ -146,7 +145,7 @@ TEST_F(TrajectoryCsv, ARodThatMoves) {
     const double rod = std::stod(row[43]), height = std::stod(row[44]);
     const Vector4<double>& q = p.path.At(t, 0).q;
     EXPECT_NEAR(rod, body.rod_length + p.path.At(t, 0).rod, 1e-8);
-    EXPECT_NEAR(height, body.cart_height + 0.6 * (body.rod_length - rod), 1e-8);
+    EXPECT_NEAR(height, body.cart_height, 1e-8);
     EXPECT_NEAR(p.hip[0][t][2], height + rod * std::cos(q[2]) * std::cos(q[3]), 1e-8);
     EXPECT_NEAR(std::stod(row[14]), p.hip[0][t][2], 1e-8);
     shortest = std::min(shortest, rod);

@@ -14,7 +14,7 @@
 #include "ident/parameters/presets.h"
 #include "ident/report/report_text.h"
 #include "models/decompositions.h"
-#include "models/modal_stability.h"
+#include "models/rollout.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

@@ -30,7 +30,7 @@ Behaviour Simulated(bool settled, double growth) {
 constexpr double kDecays = -0.5, kGrows = 1.5;  // 1/s
 
 std::string Said(const Behaviour& b, const ModelOptions& options) {
-  return VerdictSentence(VerdictOf(b, options), b, options);
+  return VerdictSentence(VerdictOf(b), b, options);
 }
 
 std::string Advised(const FitResult& result) {
@@ -41,14 +41,13 @@ std::string Advised(const FitResult& result) {
 }
 
 TEST(BehaviourText, EachFindingHasItsVerdict) {
-  const ModelOptions options;
-  EXPECT_EQ(VerdictOf(Simulated(true, kDecays), options), Verdict::kSettles);
-  EXPECT_EQ(VerdictOf(Simulated(false, kDecays), options), Verdict::kSlowToSettle);
-  EXPECT_EQ(VerdictOf(Simulated(false, kGrows), options), Verdict::kSelfPropelling);
-  EXPECT_EQ(VerdictOf(Simulated(true, kGrows), options), Verdict::kUnstableThoughSettled);
+  EXPECT_EQ(VerdictOf(Simulated(true, kDecays)), Verdict::kSettles);
+  EXPECT_EQ(VerdictOf(Simulated(false, kDecays)), Verdict::kSlowToSettle);
+  EXPECT_EQ(VerdictOf(Simulated(false, kGrows)), Verdict::kSelfPropelling);
+  EXPECT_EQ(VerdictOf(Simulated(true, kGrows)), Verdict::kUnstableThoughSettled);
   Behaviour drag = Simulated(true, kDecays);
   drag.self_propelling = true;  // the one reason that is left
-  EXPECT_EQ(VerdictOf(drag, options), Verdict::kNegativeDrag);
+  EXPECT_EQ(VerdictOf(drag), Verdict::kNegativeDrag);
 }
 
 // A fit without a push tail, held to settle: at rest exactly when it is judged, and unstable. Its
@@ -61,8 +60,7 @@ TEST(BehaviourText, SettledAndUnstableIsSaidInOneSentence) {
   const std::string sentence = Said(result.behaviour, options);
   EXPECT_TRUE(Contains(sentence, "stands still after 2 s, but is unstable at rest")) << sentence;
   EXPECT_TRUE(Contains(sentence, "1.5 1/s")) << sentence;
-  EXPECT_FALSE(
-      Contains(VerdictRemedy(VerdictOf(result.behaviour, options), options), "settling_weight"));
+  EXPECT_FALSE(Contains(VerdictRemedy(VerdictOf(result.behaviour), options), "settling_weight"));
   const std::string text = BehaviourText(result);
   EXPECT_FALSE(Contains(text, "settle within")) << text;
   EXPECT_TRUE(Contains(text, "stand still after 2 s, but not for long")) << text;
@@ -71,8 +69,8 @@ TEST(BehaviourText, SettledAndUnstableIsSaidInOneSentence) {
   EXPECT_FALSE(Contains(Advised(result), "settling_weight")) << Advised(result);
   result.options.model.push_tail = PushTail::kNone;
   EXPECT_TRUE(Contains(Advised(result), "--push_tail=exponential")) << Advised(result);
-  EXPECT_TRUE(Contains(VerdictRemedy(VerdictOf(result.behaviour, options), options),
-                       "--push_tail=exponential"));
+  EXPECT_TRUE(
+      Contains(VerdictRemedy(VerdictOf(result.behaviour), options), "--push_tail=exponential"));
 }
 
 TEST(BehaviourText, AFallWithStableModesIsNoDrive) {
@@ -102,7 +100,7 @@ TEST(BehaviourText, NoVerdictContradictsTheSimulations) {
       for (bool driven : {false, true}) {
         Behaviour b = Simulated(settled, growth);
         b.self_propelling = b.self_propelling || driven;
-        const Verdict verdict = VerdictOf(b, {});
+        const Verdict verdict = VerdictOf(b);
         EXPECT_EQ(Contains(VerdictSentence(verdict, b, {}), "settles within"),
                   settled && !b.unstable());
         EXPECT_EQ(Contains(VerdictRemedy(verdict, {}), "settling_weight"), !settled);

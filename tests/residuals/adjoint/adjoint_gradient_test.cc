@@ -14,21 +14,14 @@ struct Learned {
   RodShape rod = {};
 
   // Differences of tanh stand in both.
-  bool mlp() const { return self.kind == NetworkKind::kMlp || rod.kind == RodKind::kMlp; }
+  bool mlp() const { return self.kind == NetworkKind::kMlp; }
   std::string Name() const { return NetworkName(self) + ", rod " + RodName(rod); }
 };
 
 std::vector<Learned> EveryLearned() {
-  const RodShape linear{RodKind::kLinear, {}}, mlp{RodKind::kMlp, {5}},
-      deep{RodKind::kMlp, {4, 9, 3}};
-  std::vector<Learned> all = {{{}, linear},
-                              {{}, mlp},
-                              {{}, deep},
-                              {{NetworkKind::kMlp, 2}, mlp},
-                              {{NetworkKind::kMlp, 3}, linear},
-                              {{NetworkKind::kLdp, 3, 2}, deep},
-                              {{}, {RodKind::kLdp, {5}}},
-                              {{NetworkKind::kLdp, 3, 4}, {RodKind::kLdp, {4, 9, 3}}}};
+  const RodShape rod{RodKind::kLdp, {5}}, deep{RodKind::kLdp, {4, 9, 3}};
+  std::vector<Learned> all = {
+      {{}, rod}, {{}, deep}, {{NetworkKind::kMlp, 2}, rod}, {{NetworkKind::kLdp, 3, 2}, deep}};
   for (const NetworkShape& shape : std::vector<NetworkShape>{{NetworkKind::kMlp, 4},
                                                              {NetworkKind::kMlp, 13},
                                                              {NetworkKind::kLdp, 4, 3},
@@ -231,7 +224,7 @@ TEST(AdjointGradient, KnowsAUsersOwnLaw) {
   Random random(65);
   const NetworkRegime regime{"", 0.1, 100.0, 0.05, 0.5, 0.0};
   ModelOptions options =
-      WithNetwork({NetworkKind::kMlp, 2}, regime.weight, &random, {RodKind::kLinear, {}});
+      WithNetwork({NetworkKind::kMlp, 2}, regime.weight, &random, {RodKind::kLdp, {2}});
   options.own_laws = {
       MakeForceLaw("brake", {{"brake", "b", "m/s^2", 0.1, 0.0, 5.0, 0.1}}, Brake{})};
   ParameterMap map = EveryParameterMap({});

@@ -77,7 +77,7 @@ Model MakeModel(const std::string& terms, const NetworkShape& self, const RodSha
 // Contact alone, the network alone, beside contact and beside LDP's terms, and all that is learned.
 std::vector<Model> EveryModel(double weight, Random* random) {
   const NetworkShape mlp{NetworkKind::kMlp, 3};
-  const RodShape rod{RodKind::kLinear, {}};
+  const RodShape rod{RodKind::kLdp, {2}};
   std::vector<Model> models = {MakeModel("spring,damping", mlp, {}, {}, weight, random),
                                MakeModel("", {}, {}, {{4}}, weight, random),
                                MakeModel("spring,damping", {}, {}, {{4}}, weight, random),

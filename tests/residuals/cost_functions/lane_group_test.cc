@@ -19,18 +19,17 @@ struct LaneRegime {
   Posture posture;
   GainScaling scaling;
   FrictionKind friction;
-  CartDerivative derivative;
   PushTail tail;
   double robust;
   bool free_velocity;
 };
 
-const LaneRegime kRegimes[] = {{Posture::kInitial, GainScaling::kBody, FrictionKind::kIsotropic,
-                                CartDerivative::kNone, PushTail::kExponential, 0.5, false},
-                               {Posture::kUpright, GainScaling::kNone, FrictionKind::kAnisotropic,
-                                CartDerivative::kBackward, PushTail::kNone, 0.0, true},
-                               {Posture::kInitial, GainScaling::kMass, FrictionKind::kAnisotropic,
-                                CartDerivative::kBackward, PushTail::kExponential, 2.0, true}};
+const LaneRegime kRegimes[] = {
+    {Posture::kInitial, GainScaling::kBody, FrictionKind::kIsotropic, PushTail::kExponential, 0.5,
+     false},
+    {Posture::kUpright, GainScaling::kNone, FrictionKind::kAnisotropic, PushTail::kNone, 0.0, true},
+    {Posture::kInitial, GainScaling::kMass, FrictionKind::kAnisotropic, PushTail::kExponential, 2.0,
+     true}};
 
 // Eleven people of other lengths, steps and pushes each.
 struct Crowd {
@@ -45,7 +44,6 @@ struct Crowd {
     options.posture = regime.posture;
     options.gain_scaling = regime.scaling;
     options.friction = regime.friction;
-    options.cart_derivative = regime.derivative;
     options.push_tail = regime.tail;
     const ParameterMap map = EveryParameterMap({kMu, kKpTheta});
     ResidualSigmas sigmas;
@@ -124,7 +122,7 @@ void ExpectSame(const NormalEquations& actual, const NormalEquations& expected) 
 TEST(LaneGroup, SumsUpTheRowsOfEveryRecording) {
   for (const LaneRegime& regime : kRegimes) {
     const Crowd crowd(regime);
-    for (const PersonLanes* lanes : SupportedPersonLanes()) {
+    for (const PersonLanes* lanes : Supported<PersonLanes>()) {
       SCOPED_TRACE(lanes->bits);
       for (int first = 0; first < 11; first += lanes->lanes) {
         const int count = std::min(lanes->lanes, 11 - first);
@@ -149,7 +147,7 @@ TEST(LaneGroup, SumsUpTheRowsOfEveryRecording) {
 TEST(LaneGroup, TellsResidualsWithoutTheRobustWeight) {
   for (const LaneRegime& regime : kRegimes) {
     const Crowd crowd(regime);
-    for (const PersonLanes* lanes : SupportedPersonLanes()) {
+    for (const PersonLanes* lanes : Supported<PersonLanes>()) {
       SCOPED_TRACE(lanes->bits);
       const int count = lanes->lanes;
       const auto told = crowd.Sums(0, count, *lanes, LaneSums::kNone);
@@ -169,10 +167,10 @@ TEST(LaneGroup, TellsResidualsWithoutTheRobustWeight) {
 
 TEST(LaneGroup, WhoElseIsThereChangesNoBit) {
   const Crowd crowd(kRegimes[0]);
-  const int most = BestPersonLanes().lanes;
-  const auto together = crowd.Sums(0, most, BestPersonLanes(), LaneSums::kPlain);
+  const int most = Widest<PersonLanes>().lanes;
+  const auto together = crowd.Sums(0, most, Widest<PersonLanes>(), LaneSums::kPlain);
   for (int i = 0; i < most; ++i) {
-    const RolloutSums alone = crowd.Sums(i, 1, BestPersonLanes(), LaneSums::kPlain)[0];
+    const RolloutSums alone = crowd.Sums(i, 1, Widest<PersonLanes>(), LaneSums::kPlain)[0];
     EXPECT_EQ(alone.squares, together[i].squares);
     EXPECT_EQ(alone.plain.Factor(), together[i].plain.Factor());
   }
@@ -180,12 +178,12 @@ TEST(LaneGroup, WhoElseIsThereChangesNoBit) {
 
 TEST(LaneGroup, NamesWhoLeavesTheDomainAndKeepsTheOthers) {
   Crowd crowd(kRegimes[0]);
-  const auto before = crowd.Sums(0, 2, BestPersonLanes(), LaneSums::kPlain);
+  const auto before = crowd.Sums(0, 2, Widest<PersonLanes>(), LaneSums::kPlain);
   // No balance left, and pushed the other way by the lean.
   for (double& value : crowd.blocks[0][0]) value *= -3.0;
   crowd.blocks[0][0][kKpTheta] = -20.0;
   ASSERT_FALSE(OfRows(*crowd.problems[0], crowd.at[0].data()).ok);
-  const auto after = crowd.Sums(0, 2, BestPersonLanes(), LaneSums::kPlain);
+  const auto after = crowd.Sums(0, 2, Widest<PersonLanes>(), LaneSums::kPlain);
   EXPECT_FALSE(after[0].ok);
   ASSERT_TRUE(after[1].ok);
   EXPECT_EQ(after[1].plain.Factor(), before[1].plain.Factor());
@@ -196,6 +194,9 @@ TEST(LaneGroup, HasNoPlaceForWhatItsLoopsDoNotKnow) {
   RolloutProblem problem = *crowd.problems[0];
   EXPECT_TRUE(HasLanes(problem));
   problem.options.stance = Stance::kSteps;
+  EXPECT_FALSE(HasLanes(problem));
+  problem = *crowd.problems[0];
+  problem.options.cart_derivative = CartDerivative::kBackward;
   EXPECT_FALSE(HasLanes(problem));
   problem = *crowd.problems[0];
   problem.sigmas = kLdpSigmas;

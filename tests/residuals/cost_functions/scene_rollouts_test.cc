@@ -66,7 +66,6 @@ void ExpectThoseOfRollouts(const std::vector<Scene>& scenes, const ModelOptions&
 TEST(SceneRollouts, AreThoseOfEachScene) {
   ModelOptions options;
   options.push_tail = PushTail::kExponential;
-  options.cart_derivative = CartDerivative::kBackward;
   ASSERT_TRUE(HasLanes(Pushed(1)[0], options));
   ExpectThoseOfRollouts(Pushed(1), options);
   ExpectThoseOfRollouts(Pushed(2), options);  // without lanes

@@ -22,7 +22,7 @@ Eigen::MatrixXd RandomMatrix(int rows, int columns, Random* random) {
 // By columns and by rows, of sides that are parts of wider matrices.
 TEST(VectorKernels, ProductsEqualEigens) {
   Random random(71);
-  for (const VectorKernels* kernels : SupportedVectorKernels()) {
+  for (const VectorKernels* kernels : Supported<VectorKernels>()) {
     for (int rows : {1, 7, 24, 61}) {
       for (int columns : {1, 4, 8, 29}) {
         for (int depth : {1, 5, 320, 321, 700}) {
@@ -55,7 +55,7 @@ TEST(VectorKernels, ProductsEqualEigens) {
 // Of rows of a wider matrix; left of the diagonal's blocks nothing may change.
 TEST(Gram, EqualsEigens) {
   Random random(75);
-  for (const VectorKernels* kernels : SupportedVectorKernels()) {
+  for (const VectorKernels* kernels : Supported<VectorKernels>()) {
     for (int rows : {1, 9, 40}) {
       for (int columns : {8, 16, 40}) {
         const RowMajor a = RandomMatrix(rows, columns + 3, &random);
