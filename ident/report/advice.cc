@@ -345,6 +345,7 @@ void Adviser::Terms() {
   const AssumptionTest* surest = nullptr;  // of what is left out
   for (const AssumptionTest& test : result_.verdict.assumptions) {
     if (test.stated > 0.0 || test.error <= 0.0 || test.p >= kTermLevel) continue;
+    if (result_.options.table.Find(test.name) == nullptr) continue;  // no parameter
     if (surest == nullptr || test.p < surest->p) surest = &test;
   }
   if (surest == nullptr) return;
