@@ -40,15 +40,16 @@ SeenHips HipsAt(const PendulumRecording& recording, int frame);
 class SceneFilter {
  public:
   // Only people, pushes and frame 0 of the recording are read. parameters: one set for each
-  // person. The model must outlive the filter. frames: how far to look, in all.
+  // person. noise: none of the model's own rollout. The model must outlive the filter.
   SceneFilter(const IdentifiedModel& model, std::vector<ParameterSet<double>> parameters,
-              const InputNoise& noise, const PendulumRecording& recording, int frames);
+              const std::optional<InputNoise>& noise, const PendulumRecording& recording);
 
   // These do what those of InputFilter do.
   RolloutStatus Observe(const std::vector<PendulumState<double>>& measured,
                         const std::vector<bool>& seen);
   const RolloutStatus& status() const { return filter_.status(); }
-  RolloutStatus Forecast(RolloutPath<double>* path) const;
+  RolloutStatus Forecast(int ahead, RolloutPath<double>* path) const;
+  void Push(int person, const Vector4<double>& force);
   // The state at the last frame.
   PendulumState<double> State(int person) const { return TurnedBack(filter_.state(person)); }
 
@@ -63,7 +64,7 @@ class SceneFilter {
 // The filter that forecasts, its tail so much stronger and longer than the model's; none of models
 // with networks, whose memory no measurement corrects.
 std::optional<SceneFilter> ForecastFilter(const IdentifiedModel& model, double tail,
-                                          const PendulumRecording& recording, int frames);
+                                          const PendulumRecording& recording);
 
 // A motion that was seen to begin, and what comes of it.
 //
@@ -98,39 +99,41 @@ SeenFrame FrameAt(const PendulumRecording& recording, int frame);
 // Hips to come, by [person][frame ahead].
 struct TwoForecasts {
   HipPaths physics, input;  // empty of one that has nothing to say
-  // What the filter with an unknown force says of all frames.
+  // What the filter with an unknown force says.
   RolloutStatus input_status;
-  RolloutPath<double> input_path;
+  RolloutPath<double> input_path;  // from the last frame seen on
 };
 
 class FirstFrames {
  public:
   // Only people, pushes and frame 0 of the recording are read; it and the model must outlive
-  // the object. rollout: the model's hips over as many frames as are looked at; empty: it left the
-  // domain. tail: of ForecastFilter.
-  FirstFrames(const IdentifiedModel& model, double tail, const PendulumRecording& recording,
-              HipPaths rollout, int frames);
+  // the object. tail: of ForecastFilter.
+  FirstFrames(const IdentifiedModel& model, double tail, const PendulumRecording& recording);
 
-  // The next frame; the first is frame 1. Not more than there are.
+  // Until the next frame, on a person, beside the recording's pushes: N, N m.
+  void Push(int person, const Vector4<double>& force);
+  // The next frame; the first is frame 1. It costs the same however many were seen.
   void Observe(SeenFrame frame);
   int observed() const { return static_cast<int>(seen_.size()) + 1; }  // with frame 0
-  int frames() const { return frames_; }
-  double seconds() const;  // after frame 0
+  double seconds() const;                                              // after frame 0
   bool HasInput() const { return input_.has_value(); }
   const std::vector<SeenFrame>& seen() const { return seen_; }  // from frame 1 on
   // Where hips were seen last, by person.
   std::vector<Vector3<double>> LastHips() const;
 
-  TwoForecasts Forecasts() const;
+  // Of so many frames.
+  TwoForecasts Forecasts(int ahead) const;
 
  private:
   int LastSeen(int person, int until) const;
   Vector3<double> HipAt(int person, int frame) const;
-  HipPath Physics(int person) const;
+  HipPath Physics(int person, const RolloutPath<double>& rollout) const;
+  Vector3<double> Hip(int person, const PendulumState<double>& state) const;  // of the rollout
 
   const PendulumRecording* recording_;
-  HipPaths rollout_;
-  int frames_;
+  std::vector<double> rod_lift_;  // by person; empty: rods do not move
+  SceneFilter plain_;             // the rollout
+  HipPaths rollout_;              // its hips at the frames seen
   std::optional<SceneFilter> input_;
   std::vector<SeenFrame> seen_;
   std::vector<Vector3<double>> beside_;  // by person: hip less the filter's, where last seen
