@@ -131,11 +131,6 @@ void InputFilter::SetInputs(int rows) const {
   }
 }
 
-RolloutStatus InputFilter::FromStart(RolloutStatus status) const {
-  if (!status.ok) status.frame += first_;
-  return status;
-}
-
 void InputFilter::Push(int person, const Vector4<double>& force) {
   model_->scene.pushes.push_back({person, now_, PushKind::kExternal, {force}});
 }
@@ -163,7 +158,8 @@ RolloutStatus InputFilter::Observe(const std::vector<PendulumState<double>>& mea
   if (now_ + 1 == path_.num_frames()) Forget();
   SetInputs(1);
   status_ = StepOn<double>(model_->scene, &model_->step, now_, &path_);
-  if (!status_.ok) return status_ = FromStart(status_);
+  if (!status_.ok) status_.frame += first_;
+  if (!status_.ok) return status_;
   ++now_;
   for (size_t n = 0; n < planes_.size(); ++n) {
     PendulumState<double>& state = path_.At(now_, static_cast<int>(n));
@@ -188,9 +184,10 @@ RolloutStatus InputFilter::Forecast(int ahead, RolloutPath<double>* path) const 
   for (int t = 0; t <= now_; ++t) std::copy_n(path_.Frame(t), people, &window.At(t, 0));
   SetInputs(ahead + 1);
   ModelStep<double> step = model_->step;
-  const RolloutStatus status = RollOn<double>(model_->scene, &step, now_, &window);
+  RolloutStatus status = RollOn<double>(model_->scene, &step, now_, &window);
   for (int t = 0; t <= ahead; ++t) std::copy_n(window.Frame(now_ + t), people, &path->At(t, 0));
-  return FromStart(status);
+  if (!status.ok) status.frame += first_;
+  return status;
 }
 
 }  // namespace pushid

@@ -81,7 +81,6 @@ class InputFilter {
   static Vector4<double> FromPlanes(const Eigen::Vector2d& first, const Eigen::Vector2d& second);
 
   void Forget();
-  RolloutStatus FromStart(RolloutStatus status) const;  // its frame, of all
   // So many rows of what is unknown, from the last frame on; a step asks for the first alone.
   void SetInputs(int rows) const;
 

@@ -20,15 +20,6 @@ Eigen::Matrix3d PushAxes(const PendulumRecording& recording) {
   return axes;
 }
 
-SeenHips HipsAt(const PendulumRecording& recording, int frame) {
-  SeenHips hips;
-  for (int n = 0; n < recording.num_people(); ++n) {
-    hips.hip.push_back(recording.hip[n][frame]);
-    hips.seen.push_back(recording.Weight(n, frame) > 0.0);
-  }
-  return hips;
-}
-
 namespace {
 
 constexpr double kForceTime = 0.06;  // s, in which the unknown force dies out
@@ -103,8 +94,12 @@ constexpr double kErrorWindow = 0.05;  // s, of which an error of velocity is th
 }  // namespace
 
 SeenFrame FrameAt(const PendulumRecording& recording, int frame) {
-  SeenFrame seen{HipsAt(recording, frame), {}};
-  for (const auto& states : recording.states) seen.states.push_back(states[frame]);
+  SeenFrame seen;
+  for (int n = 0; n < recording.num_people(); ++n) {
+    seen.hips.hip.push_back(recording.hip[n][frame]);
+    seen.hips.seen.push_back(recording.Weight(n, frame) > 0.0);
+    seen.states.push_back(recording.states[n][frame]);
+  }
   return seen;
 }
 

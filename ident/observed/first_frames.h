@@ -24,7 +24,6 @@ struct SeenHips {
   std::vector<bool> seen = {};       // by person; empty: all of them
   bool Sees(int person) const { return seen.empty() || seen[person]; }
 };
-SeenHips HipsAt(const PendulumRecording& recording, int frame);
 
 // The filter of unknown forces (models/input_filter.h) on a recording's scene, in the axes
 // and with the bodies that the model sees (problem/own_axes.h); what goes in and comes out is in

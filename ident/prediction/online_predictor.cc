@@ -13,15 +13,6 @@ Eigen::Vector2d CartUnder(const Body& body, const Vector3<double>& hip, const Ve
   return (hip - HipPosition(body, at_origin)).head<2>();
 }
 
-// A predictor that has seen the first frames.
-Result<OnlinePredictor> After(const IdentifiedModel& model, const PendulumRecording& recording,
-                              int observed, int num_frames, ForecastUse use) {
-  Result<OnlinePredictor> made = OnlinePredictor::Make(
-      model, recording, num_frames > 0 ? num_frames : recording.num_frames(), use);
-  for (int t = 1; made.ok() && t < observed; ++t) made.value().Observe(FrameAt(recording, t));
-  return made;
-}
-
 }  // namespace
 
 MaybeError CheckLearnsFromFrames(const IdentifiedModel& model) {
@@ -133,8 +124,10 @@ HipDistribution OnlinePredictor::Distribution(const Prediction& prediction) cons
 Result<Prediction> PredictFrom(const IdentifiedModel& model, const PendulumRecording& recording,
                                int observed, int num_frames, ForecastUse use) {
   if (observed == 0) return Predict(model, recording, num_frames);
-  const Result<OnlinePredictor> made = After(model, recording, observed, num_frames, use);
+  Result<OnlinePredictor> made = OnlinePredictor::Make(
+      model, recording, num_frames > 0 ? num_frames : recording.num_frames(), use);
   if (!made.ok()) return made.error();
+  for (int t = 1; t < observed; ++t) made.value().Observe(FrameAt(recording, t));
   Prediction prediction = made.value().Predict();
   if (!prediction.status.ok) return prediction;
   const HipDistribution hips = made.value().Distribution(prediction);

@@ -12,14 +12,8 @@
 // anything is seen the prediction is that of Predict, to the bit. Every forecast needs that
 // rollout: where it leaves the domain, nothing is predicted.
 //
-// A controller asks for the next frames alone, whose cost does not depend on how many were seen,
-// and tells what it measures of pushes as it comes:
-//   auto predictor = OnlinePredictor::Make(model, scene, OnlinePredictor::kEndless);
-//   while (camera.Next()) {
-//     for (...) predictor.value().Push(person, force);   // until the next frame
-//     predictor.value().Observe(people);
-//     const HipPaths hips = predictor.value().Next(60);
-//   }
+// A controller that runs on and on makes it kEndless, tells what it measures of pushes by Push, and
+// asks for the next frames alone by Next, whose cost does not depend on how many were seen.
 #pragma once
 
 #include <memory>

@@ -24,12 +24,16 @@ void Renew(ScenePush* push) {
   *push = MakeScenePush(push->person, push->start_frame, push->kind, std::move(push->force));
 }
 
-void ScaleMeasured(double eta, PendulumRecording* r) {
-  ForMeasured(r, [eta](ScenePush* push) {
-    for (Vector4<double>& row : push->force) row *= 1.0 + eta;
-    Renew(push);
-  });
+// Rows of pushes that were measured, or of those by inverse dynamics.
+void ScaleRows(bool measured, double factor, PendulumRecording* r) {
+  for (ScenePush& push : r->scene.pushes) {
+    if ((push.kind == PushKind::kExternal) != measured) continue;
+    for (Vector4<double>& row : push.force) row *= factor;
+    Renew(&push);
+  }
 }
+
+void ScaleMeasured(double eta, PendulumRecording* r) { ScaleRows(true, 1.0 + eta, r); }
 
 // Later by eta frames, between rows by straight lines.
 void Lag(double eta, PendulumRecording* r) {
@@ -79,11 +83,7 @@ void Shift(double eta, PendulumRecording* r) {
 // All people heavier by the share eta; pushes by inverse dynamics with them.
 void ScaleMasses(double eta, PendulumRecording* r) {
   for (ScenePerson& person : r->scene.people) person.body.mass *= 1.0 + eta;
-  for (ScenePush& push : r->scene.pushes) {
-    if (push.kind == PushKind::kExternal) continue;
-    for (Vector4<double>& row : push.force) row *= 1.0 + eta;
-    Renew(&push);
-  }
+  ScaleRows(false, 1.0 + eta, r);
 }
 
 // More frames a second by the share eta; forces by inverse dynamics are masses times second
@@ -91,11 +91,7 @@ void ScaleMasses(double eta, PendulumRecording* r) {
 void ScaleFrameRate(double eta, PendulumRecording* r) {
   r->scene.dt /= 1.0 + eta;
   for (ScenePerson& person : r->scene.people) person.start.qd *= 1.0 + eta;
-  for (ScenePush& push : r->scene.pushes) {
-    if (push.kind == PushKind::kExternal) continue;
-    for (Vector4<double>& row : push.force) row *= (1.0 + eta) * (1.0 + eta);
-    Renew(&push);
-  }
+  ScaleRows(false, (1.0 + eta) * (1.0 + eta), r);
   for (auto& states : r->states) {
     for (PendulumState<double>& state : states) state.qd *= 1.0 + eta;
   }
