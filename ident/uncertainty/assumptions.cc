@@ -160,7 +160,7 @@ void LoadCarts(double eta, PendulumRecording* r) {
 }
 
 // Measured pushes come again, eta times as strong.
-void PushAgain(double eta, PendulumRecording* r) {
+void PushTwice(double eta, PendulumRecording* r) {
   const int later = static_cast<int>(std::lround(kPushedAgain / r->scene.dt));
   std::vector<ScenePush> again = r->scene.pushes;
   ForMeasured(r, [&](ScenePush* push) {
@@ -241,7 +241,7 @@ std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint&
     all.push_back({"lag of the pushes", "frames", stated.push_lag_frames, 1e-3, Lag});
     all.push_back({"height of the pushes", "m", stated.push_height_m, 1e-4, Raise});
     all.push_back({"zero of the pushes", "N", stated.push_zero_N, 1e-2, Shift});
-    all.push_back({"second pushes", "", 0.0, 1e-4, PushAgain});
+    all.push_back({"second pushes", "", 0.0, 1e-4, PushTwice});
   }
   all.push_back({"masses", "", stated.mass, 1e-4, ScaleMasses});
   all.push_back({"frame rate", "", stated.frame_rate, 1e-4, ScaleFrameRate, nullptr, {}, true});
