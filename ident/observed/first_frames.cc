@@ -22,7 +22,8 @@ Eigen::Matrix3d PushAxes(const PendulumRecording& recording) {
 
 namespace {
 
-constexpr double kForceTime = 0.06;  // s, in which the unknown force dies out
+constexpr double kForceTime = 0.06;    // s, in which the unknown force dies out
+constexpr double kErrorWindow = 0.05;  // s, of which an error of velocity is the mean
 
 // Gains of the reference person (self_terms.h).
 void SetForecastGains(ParameterSet<double>* p) {
@@ -86,12 +87,6 @@ std::optional<SceneFilter> ForecastFilter(const IdentifiedModel& model, double t
   noise.force_time = kForceTime;
   return SceneFilter(model, std::move(parameters), noise, recording);
 }
-
-namespace {
-
-constexpr double kErrorWindow = 0.05;  // s, of which an error of velocity is the mean
-
-}  // namespace
 
 SeenFrame FrameAt(const PendulumRecording& recording, int frame) {
   SeenFrame seen;
