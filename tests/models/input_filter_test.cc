@@ -149,8 +149,7 @@ TEST(InputFilter, WithoutNoiseGoesOnAsTheRollout) {
   ModelOptions options = Isotropic();
   options.delay = Delay::kOne;
   ParameterSet<double> p = Recovering();
-  p[kReactionDelay] = 0.2;
-  p[kStepDelay] = 0.01;
+  p[kReactionDelay] = 0.06, p[kKdTheta] = p[kKdPhi] = 150.0;
   Scene scene = OnePerson();
   scene.people[0].start.q.tail<2>().setZero();
   std::vector<GroundPose> poses;
