@@ -29,6 +29,10 @@ DEFINE_string(up, "", "the files' axis that points up (z unless given)");
 DEFINE_string(forward, "", "the files' axis that points in the push direction (x unless given)");
 DEFINE_string(length_unit, "", kUnitHelp.c_str());
 DEFINE_double(length_scale, 0.0, "instead of a unit: metres per length unit of the files");
+DEFINE_string(set, "",
+              "any other key of all recordings, KEY=VALUE, as in group=older or "
+              "force_plates.file=plates/{id}.csv (csv under ground: ground.csv), with {id} and "
+              "names from --pattern; may be repeated");
 DEFINE_string(out, "", "write the manifest here (JSON)");
 DEFINE_bool(update, false,
             "add to the existing manifest; entries whose id it already has stay unchanged");
@@ -59,6 +63,7 @@ ManifestOptions OptionsFromFlags() {
   options.mapping = FLAGS_mapping;
   options.up = FLAGS_up;
   options.forward = FLAGS_forward;
+  options.set = SplitList(FLAGS_set, ';');
   if (!FLAGS_masses.empty()) options.people = OrFail(ReadPeople(FLAGS_masses));
   OrFail(ParseName("--push_kind", FLAGS_push_kind, &options.push_kind));
   TakeLength(FLAGS_length_unit, FLAGS_length_scale, &options.length_unit, &options.length_scale);
@@ -124,6 +129,7 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  pushid::JoinRepeated("set", ';', argc, argv);
   return pushid::RunApp(
       argc, argv,
       "pushid-manifest writes the manifest of recordings whose file names follow a pattern.\n"

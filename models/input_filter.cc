@@ -2,6 +2,7 @@
 #include "models/input_filter.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "models/ipm.h"
@@ -12,6 +13,8 @@ namespace {
 
 constexpr double kStartPlace = 1e-3, kStartSpeed = 0.02;  // m and m/s; rad and rad/s
 constexpr double kRounding = 5e-4;  // m and rad, of measurements: white, and keeps S regular
+
+constexpr int kWindow = 64;  // frames that a filter keeps at most, beside those it needs
 
 // The plane's rows of friction, balance and the linear self force (self_terms.h).
 InputPlane::Gains PlaneGains(const ModelOptions& options, const ParameterSet<double>& p,
@@ -79,25 +82,28 @@ InputPlane::Correction InputPlane::Update(const Eigen::Vector2d& innovation) {
   return moved;
 }
 
-InputFilter::InputFilter(const Scene& scene, const ModelOptions& options,
-                         std::vector<ParameterSet<double>> parameters, const InputNoise& noise,
-                         int num_frames)
-    : scene_(scene),
-      known_pushes_(scene.pushes.size()),
-      options_(options),
-      parameters_(std::move(parameters)),
-      path_(num_frames, scene.num_people()) {
-  for (int n = 0; n < scene.num_people(); ++n) {
-    path_.At(0, n) = scene.people[n].start;
-    scene_.pushes.push_back(
-        {n, 0, PushKind::kExternal,
-         std::vector<Vector4<double>>(num_frames, Vector4<double>(Vector4<double>::Zero()))});
-    const Body& body = scene.people[n].body;
+InputFilter::InputFilter(Scene scene, const ModelOptions& options,
+                         std::vector<ParameterSet<double>> parameters,
+                         const std::optional<InputNoise>& noise)
+    : model_(std::make_unique<Model>(std::move(scene), options, std::move(parameters))),
+      known_pushes_(model_->scene.pushes.size()) {
+  const Scene& of = model_->scene;
+  double back = 0.0;  // s
+  for (const ParameterSet<double>& p : model_->parameters) {
+    if (options.delay != Delay::kNone) back = std::max({back, p[kReactionDelay], p[kStepDelay]});
+  }
+  kept_ = static_cast<int>(std::ceil(back / of.dt)) + DelayedFrames<double>::kCount + 1;
+  path_.Reset(kept_ + kWindow, of.num_people());
+  StartPath(of, InitialVelocities(of), &path_);
+  if (!noise) return;
+  for (int n = 0; n < of.num_people(); ++n) {
     const auto plane = [&](int i) {
-      return InputPlane(body, PlaneGains(options, parameters_[n], body, i), noise, scene.dt);
+      const Body& body = of.people[n].body;
+      return InputPlane(body, PlaneGains(options, model_->parameters[n], body, i), *noise, of.dt);
     };
     planes_.push_back({plane(0), plane(1)});
   }
+  model_->scene.pushes.resize(known_pushes_ + planes_.size());
 }
 
 Eigen::Vector2d InputFilter::InPlane(int plane, const Vector4<double>& q) {
@@ -113,17 +119,50 @@ Vector4<double> InputFilter::Input(int person) const {
   return FromPlanes(planes_[person][0].input(), planes_[person][1].input());
 }
 
+void InputFilter::SetInputs(int rows) const {
+  for (size_t n = 0; n < planes_.size(); ++n) {
+    ScenePush& push = model_->scene.pushes[known_pushes_ + n];
+    push.person = static_cast<int>(n);
+    push.start_frame = now_;
+    push.force.assign(rows, Input(push.person));
+    for (int i = 1; i < rows; ++i) {
+      push.force[i] = planes_[n][0].input_decay() * push.force[i - 1];
+    }
+  }
+}
+
+void InputFilter::Push(int person, const Vector4<double>& force) {
+  model_->scene.pushes.push_back({person, now_, PushKind::kExternal, {force}});
+}
+
+// Makes room in the window.
+void InputFilter::Forget() {
+  Scene& scene = model_->scene;
+  const int by = now_ + 1 - kept_;
+  for (int t = 0; t < kept_; ++t) {
+    for (int n = 0; n < scene.num_people(); ++n) path_.At(t, n) = path_.At(t + by, n);
+  }
+  for (ScenePush& push : scene.pushes) push.start_frame -= by;
+  const auto over = [](const ScenePush& push) { return push.EndFrame() < 0; };
+  const auto given = scene.pushes.begin() + known_pushes_ + planes_.size();
+  scene.pushes.erase(std::remove_if(given, scene.pushes.end(), over), scene.pushes.end());
+  std::vector<GroundStep>& ground = scene.ground.steps;
+  ground.erase(ground.begin(), ground.begin() + std::min<size_t>(by, ground.size()));
+  first_ += by;
+  now_ -= by;
+}
+
 RolloutStatus InputFilter::Observe(const std::vector<PendulumState<double>>& measured,
                                    const std::vector<bool>& seen) {
-  if (!status_.ok || observed_ >= path_.num_frames()) return status_;
-  const int people = scene_.num_people(), t = observed_ - 1;
-  for (int n = 0; n < people; ++n) scene_.pushes[known_pushes_ + n].force[t] = Input(n);
-  ModelStep<double> forces(scene_, options_, parameters_);
-  status_ = StepOn<double>(scene_, &forces, t, &path_);
   if (!status_.ok) return status_;
-  ++observed_;
-  for (int n = 0; n < people; ++n) {
-    PendulumState<double>& state = path_.At(t + 1, n);
+  if (now_ + 1 == path_.num_frames()) Forget();
+  SetInputs(1);
+  status_ = StepOn<double>(model_->scene, &model_->step, now_, &path_);
+  if (!status_.ok) status_.frame += first_;
+  if (!status_.ok) return status_;
+  ++now_;
+  for (size_t n = 0; n < planes_.size(); ++n) {
+    PendulumState<double>& state = path_.At(now_, static_cast<int>(n));
     std::array<InputPlane::Correction, 2> moved;
     for (int i : {0, 1}) {
       InputPlane& plane = planes_[n][i];
@@ -137,20 +176,18 @@ RolloutStatus InputFilter::Observe(const std::vector<PendulumState<double>>& mea
   return status_;
 }
 
-RolloutStatus InputFilter::Forecast(RolloutPath<double>* path) const {
-  *path = path_;
+RolloutStatus InputFilter::Forecast(int ahead, RolloutPath<double>* path) const {
+  const int people = path_.num_people();
+  path->Reset(ahead + 1, people);
   if (!status_.ok) return status_;
-  Scene scene = scene_;
-  for (int n = 0; n < scene.num_people(); ++n) {
-    Vector4<double> left = Input(n);
-    ScenePush& push = scene.pushes[known_pushes_ + n];
-    for (int t = observed_ - 1; t < path->num_frames(); ++t) {
-      push.force[t] = left;
-      left *= planes_[n][0].input_decay();
-    }
-  }
-  ModelStep<double> forces(scene, options_, parameters_);
-  return RollOn<double>(scene, &forces, observed_ - 1, path);
+  RolloutPath<double> window(now_ + 1 + ahead, people);
+  for (int t = 0; t <= now_; ++t) std::copy_n(path_.Frame(t), people, &window.At(t, 0));
+  SetInputs(ahead + 1);
+  ModelStep<double> step = model_->step;
+  RolloutStatus status = RollOn<double>(model_->scene, &step, now_, &window);
+  for (int t = 0; t <= ahead; ++t) std::copy_n(window.Frame(now_ + t), people, &path->At(t, 0));
+  if (!status.ok) status.frame += first_;
+  return status;
 }
 
 }  // namespace pushid

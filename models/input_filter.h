@@ -15,10 +15,14 @@
 #pragma once
 
 #include <array>
+#include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "models/process_noise.h"
 #include "models/scene.h"
+#include "models/step.h"
 
 namespace pushid {
 
@@ -48,24 +52,26 @@ class InputPlane {
   Eigen::Vector2d input_ = Eigen::Vector2d::Zero(), error_ = Eigen::Vector2d::Zero();
 };
 
+// A rollout that goes on frame by frame; with noise, corrected by what is seen. Of the past it
+// keeps a window, so that a frame costs the same however many there were.
 class InputFilter {
  public:
-  // parameters: one set for each person. num_frames: how far to look, frame 0 included. Scene and
+  // parameters: one set for each person. noise: none of a rollout that nothing corrects. The
   // options must outlive the filter.
-  InputFilter(const Scene& scene, const ModelOptions& options,
-              std::vector<ParameterSet<double>> parameters, const InputNoise& noise,
-              int num_frames);
+  InputFilter(Scene scene, const ModelOptions& options,
+              std::vector<ParameterSet<double>> parameters, const std::optional<InputNoise>& noise);
 
+  // A force on a person until the next frame, beside the pushes of the scene.
+  void Push(int person, const Vector4<double>& force);
   // The next frame, of everybody; seen: by person. Returns where the model left its domain, which
   // ends the filter.
   RolloutStatus Observe(const std::vector<PendulumState<double>>& measured,
                         const std::vector<bool>& seen);
-  int observed() const { return observed_; }  // with frame 0
   // The state at the last frame.
-  const PendulumState<double>& state(int person) const { return path_.At(observed_ - 1, person); }
+  const PendulumState<double>& state(int person) const { return path_.At(now_, person); }
   const RolloutStatus& status() const { return status_; }
-  // All frames: those observed as filtered, the rest with the force dying out.
-  RolloutStatus Forecast(RolloutPath<double>* path) const;
+  // The last frame and so many after it, with the force dying out.
+  RolloutStatus Forecast(int ahead, RolloutPath<double>* path) const;
   // d, on x, y, theta and phi, N and N m.
   Vector4<double> Input(int person) const;
 
@@ -74,13 +80,25 @@ class InputFilter {
   static Eigen::Vector2d InPlane(int plane, const Vector4<double>& q);
   static Vector4<double> FromPlanes(const Eigen::Vector2d& first, const Eigen::Vector2d& second);
 
-  Scene scene_;  // with a push more for each person: what is unknown
-  size_t known_pushes_;
-  const ModelOptions& options_;
-  std::vector<ParameterSet<double>> parameters_;
-  int observed_ = 1;
+  void Forget();
+  // So many rows of what is unknown, from the last frame on; a step asks for the first alone.
+  void SetInputs(int rows) const;
+
+  // On the heap: the step points to them.
+  struct Model {
+    Scene scene;  // frames count from `first_`; behind the known pushes one a plane, then Push's
+    std::vector<ParameterSet<double>> parameters;
+    ModelStep<double> step;
+    Model(Scene of, const ModelOptions& options, std::vector<ParameterSet<double>> sets)
+        : scene(std::move(of)), parameters(std::move(sets)), step(scene, options, parameters) {}
+  };
+  std::unique_ptr<Model> model_;
   RolloutStatus status_;
-  RolloutPath<double> path_;
+  RolloutPath<double> path_;  // the window
+  int first_ = 0;             // the frame at which it begins
+  int now_ = 0;               // the last frame, in it
+  int kept_;                  // frames that a step looks back
+  size_t known_pushes_;
   std::vector<std::array<InputPlane, 2>> planes_;
 };
 

@@ -1,5 +1,6 @@
 // apps: predictions in Python: from the first frame and the push, from frames as they come, as
 // whole bodies, on formations, as most probable paths, and of people who stand.
+#include <algorithm>
 #include <array>
 
 #include "apps/python/bindings.h"
@@ -200,7 +201,15 @@ class Online {
     predictor_->Observe(FrameAt(MakePendulumRecording(last_), 1));
   }
 
+  void Push(int person, const Array& force) {
+    const bool known = person >= 0 && person < recording_->num_people();
+    if (!known || force.ndim() != 1 || force.shape(0) != 4) {
+      Raise(Fault::kData, Error{"a push is [Fx, Fy, Mtheta, Mphi], on one of the people, from 0"});
+    }
+    predictor_->Push(person, {force.at(0), force.at(1), force.at(2), force.at(3)});
+  }
   py::dict Predict() const { return DictOf(predictor_->Predict(), *recording_); }
+  Array Next(int ahead) const { return PathsArray(predictor_->Next(std::max(0, ahead))); }
   int observed() const { return predictor_->observed(); }
 
  private:
@@ -387,7 +396,9 @@ void BindPredictions(py::module_* module) {
   py::class_<Online>(*module, "Online")
       .def(py::init<const Model&, const SharedRecording&, int, const std::string&>())
       .def("observe", &Online::Observe)
+      .def("push", &Online::Push)
       .def("predict", &Online::Predict)
+      .def("next", &Online::Next)
       .def_property_readonly("observed", &Online::observed);
   py::class_<Restoration, std::shared_ptr<Restoration>>(*module, "Restoration")
       .def("apply", [](const std::shared_ptr<Restoration>& r, const Model& model,

@@ -39,6 +39,9 @@ struct ManifestOptions {
   std::string mapping, up, forward;
   std::optional<LengthUnit> length_unit;
   std::optional<double> length_scale;  // m, instead of a unit
+  // Other keys of every recording, "force_plates.file=plates/{id}.csv": {id} is the recording's,
+  // other names are those of `pattern`.
+  std::vector<std::string> set;
 };
 
 struct MadeManifest {
@@ -52,8 +55,9 @@ struct MadeManifest {
 
 // Errors: no folder, a pattern that is none or fits no file, an ending of no known format, a push
 // pattern with a * or a name that the pattern has not, no mapping file, people without mass (all
-// are named), a rate that no file and no option says, two recordings of one id, no file that can be
-// read. A recording with a file that cannot be read is left out.
+// are named), a key to set that the manifest's reader refuses, a rate that no file and no option
+// says, two recordings of one id, no file that can be read. A recording with a file that cannot be
+// read is left out.
 Result<MadeManifest> MakeManifest(const ManifestOptions& options);
 
 // People from a CSV file with the columns id and mass_kg (0 where a cell is empty or n/a), and any

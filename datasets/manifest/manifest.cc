@@ -328,6 +328,23 @@ const std::vector<std::string>& ManifestKeys() {
   return keys;
 }
 
+Result<ManifestRecording> WithKey(const ManifestRecording& recording, const std::string& key,
+                                  const std::string& value) {
+  JsonDocument document;
+  document.content = RecordingJson(recording);
+  Json* at = &document.content;
+  for (const std::string& name : SplitList(key, '.')) {
+    if (!at->is_object()) *at = Json::object();
+    at = &(*at)[name];
+  }
+  *at = Json::parse(value, nullptr, false);
+  if (at->is_discarded()) *at = value;
+  JsonFields fields(document, document.content, "", "recording " + Quoted(recording.id));
+  ManifestRecording read = ReadRecording(document, document.content, {}, &fields);
+  if (fields.failed()) return *fields.error();
+  return read;
+}
+
 std::vector<std::string> MisspeltKeys(const ManifestRecording& entry) {
   std::vector<std::string> found;
   if (!entry.json->is_object()) return found;

@@ -129,6 +129,11 @@ MaybeError WriteManifest(const std::string& path, const Manifest& manifest);
 // "push/a.csv" as named by the manifest at `manifest_path`: relative to its folder unless absolute.
 std::string ResolvePath(const std::string& manifest_path, const std::string& file);
 
+// The entry with one of its keys set, read anew: "ground.csv" is csv under ground. value: JSON, or
+// else a text. Errors: those of ReadManifest.
+Result<ManifestRecording> WithKey(const ManifestRecording& recording, const std::string& key,
+                                  const std::string& value);
+
 // Keys of a recording that this program knows.
 const std::vector<std::string>& ManifestKeys();
 

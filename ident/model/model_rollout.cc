@@ -48,24 +48,6 @@ std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model
   return sets;
 }
 
-HipPaths HipsOfRollout(const IdentifiedModel& model, const PendulumRecording& recording,
-                       int frames) {
-  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
-  RolloutPath<double> path;
-  HipPaths hips;
-  if (!RolloutInOwnAxes(recording, model.options, parameters, frames, &path).ok) return hips;
-  for (int n = 0; n < recording.num_people(); ++n) {
-    const Body& body = recording.scene.people[n].body;
-    hips.emplace_back();
-    for (int t = 0; t < frames; ++t) {
-      const PendulumState<double>& state = path.At(t, n);
-      hips[n].push_back(
-          HipPosition(RodMoves(model.options) ? BodyNow(body, state.rod) : body, state.q));
-    }
-  }
-  return hips;
-}
-
 std::string OutsideText(const RolloutStatus& status) {
   return std::string(status.quantity) + " of person " + std::to_string(status.person) +
          " leaves the model's domain at frame " + std::to_string(status.frame);

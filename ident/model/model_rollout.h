@@ -18,10 +18,6 @@ using HipPaths = std::vector<HipPath>;
 std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model,
                                                     const PendulumRecording& recording);
 
-// Everybody's hips in a rollout; none where it leaves the model's domain.
-HipPaths HipsOfRollout(const IdentifiedModel& model, const PendulumRecording& recording,
-                       int frames);
-
 // "theta of person 0 leaves the model's domain at frame 31"
 std::string OutsideText(const RolloutStatus& status);
 

@@ -26,7 +26,7 @@ constexpr double kForceTime = 0.06;  // s, in which the unknown force dies out
 // The filter that forecasts, its tail so much stronger and longer than the model's; none of models
 // with networks, whose memory no measurement corrects.
 std::optional<SceneFilter> ForecastFilter(const IdentifiedModel& model, double tail,
-                                          const PendulumRecording& recording, int frames) {
+                                          const PendulumRecording& recording) {
   if (model.options.learned != nullptr) return std::nullopt;
   std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
   for (ParameterSet<double>& p : parameters) {
@@ -44,7 +44,7 @@ std::optional<SceneFilter> ForecastFilter(const IdentifiedModel& model, double t
   }
   InputNoise noise;
   noise.force_time = kForceTime;
-  return SceneFilter(model, std::move(parameters), noise, recording, frames);
+  return SceneFilter(model, std::move(parameters), noise, recording);
 }
 
 constexpr double kErrorWindow = 0.05;  // s, of which an error of velocity is the mean
@@ -98,14 +98,13 @@ std::vector<ForecastTrial> TrialsOf(const IdentifiedModel& model,
                                     const PendulumRecording& recording) {
   std::vector<ForecastTrial> trials;
   const int frames = recording.num_frames();
-  const HipPaths rollout = HipsOfRollout(model, recording, frames);
   for (size_t i = 0; i < std::size(kTails); ++i) {
-    FirstFrames first(model, kTails[i], recording, rollout, frames);
+    FirstFrames first(model, kTails[i], recording);
     size_t moment = 0;
     for (int t = 0; t + kFramesAfter < frames && moment < std::size(kMoments); ++t) {
       if (t > 0) first.Observe(FrameAt(recording, t));
       if (first.seconds() < kMoments[moment] - 1e-9) continue;
-      TwoForecasts two = first.Forecasts();
+      TwoForecasts two = first.Forecasts(frames - 1 - t);
       if (i == 0) {
         ForecastTrial& trial = trials.emplace_back();
         trial.seconds = first.seconds();
@@ -189,12 +188,12 @@ std::optional<double> MeanDistance(const ForecastTrial& trial, const HipPaths& h
 }  // namespace
 
 SceneFilter::SceneFilter(const IdentifiedModel& model, std::vector<ParameterSet<double>> parameters,
-                         const InputNoise& noise, const PendulumRecording& recording, int frames)
+                         const std::optional<InputNoise>& noise, const PendulumRecording& recording)
     : angle_(OwnAxes(recording, model.options.directions)),
       to_(angle_),
       back_(-angle_),
-      filter_(SceneInOwnAxes(recording, model.options), model.options, std::move(parameters), noise,
-              frames) {}
+      filter_(SceneInOwnAxes(recording, model.options), model.options, std::move(parameters),
+              noise) {}
 
 RolloutStatus SceneFilter::Observe(const std::vector<PendulumState<double>>& measured,
                                    const std::vector<bool>& seen) {
@@ -211,8 +210,12 @@ PendulumState<double> SceneFilter::TurnedBack(PendulumState<double> state) const
   return state;
 }
 
-RolloutStatus SceneFilter::Forecast(RolloutPath<double>* path) const {
-  const RolloutStatus status = filter_.Forecast(path);
+void SceneFilter::Push(int person, const Vector4<double>& force) {
+  filter_.Push(person, angle_ == 0.0 ? force : to_.Force(State(person).q, force));
+}
+
+RolloutStatus SceneFilter::Forecast(int ahead, RolloutPath<double>* path) const {
+  const RolloutStatus status = filter_.Forecast(ahead, path);
   if (angle_ == 0.0 || !status.ok) return status;
   for (int t = 0; t < path->num_frames(); ++t) {
     for (int n = 0; n < path->num_people(); ++n) path->At(t, n) = TurnedBack(path->At(t, n));
@@ -231,26 +234,38 @@ SeenFrame FrameAt(const PendulumRecording& recording, int frame) {
 }
 
 FirstFrames::FirstFrames(const IdentifiedModel& model, double tail,
-                         const PendulumRecording& recording, HipPaths rollout, int frames)
+                         const PendulumRecording& recording)
     : recording_(&recording),
-      rollout_(std::move(rollout)),
-      frames_(frames),
-      input_(ForecastFilter(model, tail, recording, frames)),
-      beside_(recording.hip.size(), Vector3<double>::Zero()) {}
+      rod_moves_(RodMoves(model.options)),
+      plain_(model, PeoplesParameters(model, recording), std::nullopt, recording),
+      input_(ForecastFilter(model, tail, recording)),
+      beside_(recording.hip.size(), Vector3<double>::Zero()) {
+  for (int n = 0; n < recording.num_people(); ++n) {
+    rollout_.push_back({Hip(n, plain_.State(n))});
+  }
+}
 
 double FirstFrames::seconds() const { return (observed() - 1) * recording_->scene.dt; }
 
+Vector3<double> FirstFrames::Hip(int person, const PendulumState<double>& state) const {
+  const Body& body = recording_->scene.people[person].body;
+  return HipPosition(rod_moves_ ? BodyNow(body, state.rod) : body, state.q);
+}
+
+void FirstFrames::Push(int person, const Vector4<double>& force) {
+  plain_.Push(person, force);
+  if (input_) input_->Push(person, force);
+}
+
 void FirstFrames::Observe(SeenFrame frame) {
-  if (observed() >= frames()) return;
-  if (input_) {
-    std::vector<bool> seen;
-    for (size_t n = 0; n < beside_.size(); ++n) seen.push_back(frame.Sees(static_cast<int>(n)));
-    input_->Observe(frame.states, seen);
-    for (size_t n = 0; n < beside_.size(); ++n) {
-      if (!seen[n] || !input_->status().ok) continue;
-      beside_[n] = frame.hip[n] - HipPosition(recording_->scene.people[n].body,
-                                              input_->State(static_cast<int>(n)).q);
-    }
+  std::vector<bool> seen;
+  for (int n = 0; n < recording_->num_people(); ++n) seen.push_back(frame.Sees(n));
+  plain_.Observe(frame.states, seen);
+  if (input_) input_->Observe(frame.states, seen);
+  for (int n = 0; n < recording_->num_people(); ++n) {
+    rollout_[n].push_back(Hip(n, plain_.State(n)));
+    if (!input_ || !seen[n] || !input_->status().ok) continue;
+    beside_[n] = frame.hip[n] - HipPosition(recording_->scene.people[n].body, input_->State(n).q);
   }
   seen_.push_back(std::move(frame));
 }
@@ -273,7 +288,7 @@ std::vector<Vector3<double>> FirstFrames::LastHips() const {
   return hips;
 }
 
-HipPath FirstFrames::Physics(int person) const {
+HipPath FirstFrames::Physics(int person, const RolloutPath<double>& rollout) const {
   const double dt = recording_->scene.dt;
   const int window = std::max(1, static_cast<int>(std::lround(kErrorWindow / dt)));
   const int last = LastSeen(person, observed() - 1);
@@ -286,22 +301,27 @@ HipPath FirstFrames::Physics(int person) const {
   Vector3<double> velocity = Vector3<double>::Zero();
   if (last > before) velocity = (off - error(before)) / ((last - before) * dt);
   HipPath path;
-  for (int t = observed(); t < frames_; ++t) {
-    const double reach = kErrorTime * (1.0 - std::exp(-(t - last) * dt / kErrorTime));
-    path.push_back(rollout_[person][t] + off + reach * velocity);
+  for (int t = 1; t < rollout.num_frames(); ++t) {
+    const double ahead = (observed() - 1 + t - last) * dt;
+    const double reach = kErrorTime * (1.0 - std::exp(-ahead / kErrorTime));
+    path.push_back(Hip(person, rollout.At(t, person)) + off + reach * velocity);
   }
   return path;
 }
 
-TwoForecasts FirstFrames::Forecasts() const {
+TwoForecasts FirstFrames::Forecasts(int ahead) const {
   TwoForecasts two;
-  for (size_t n = 0; n < rollout_.size(); ++n) two.physics.push_back(Physics(static_cast<int>(n)));
+  RolloutPath<double> rollout;
+  const bool stays = plain_.Forecast(ahead, &rollout).ok;
+  for (int n = 0; stays && n < recording_->num_people(); ++n) {
+    two.physics.push_back(Physics(n, rollout));
+  }
   if (!input_) return two;
-  two.input_status = input_->Forecast(&two.input_path);
+  two.input_status = input_->Forecast(ahead, &two.input_path);
   if (!two.input_status.ok) return two;
   for (size_t n = 0; n < beside_.size(); ++n) {
     HipPath& hips = two.input.emplace_back();
-    for (int t = observed(); t < frames(); ++t) {
+    for (int t = 1; t <= ahead; ++t) {
       const Vector4<double>& q = two.input_path.At(t, static_cast<int>(n)).q;
       hips.push_back(beside_[n] + HipPosition(recording_->scene.people[n].body, q));
     }

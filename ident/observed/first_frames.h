@@ -32,15 +32,16 @@ Eigen::Matrix3d PushAxes(const PendulumRecording& recording);
 class SceneFilter {
  public:
   // The recording is read for people, pushes and frame 0 alone. parameters: one set for each
-  // person. The model must outlive the filter. frames: how far to look, in all.
+  // person. noise: none of the model's own rollout. The model must outlive the filter.
   SceneFilter(const IdentifiedModel& model, std::vector<ParameterSet<double>> parameters,
-              const InputNoise& noise, const PendulumRecording& recording, int frames);
+              const std::optional<InputNoise>& noise, const PendulumRecording& recording);
 
   // These do what those of InputFilter do.
   RolloutStatus Observe(const std::vector<PendulumState<double>>& measured,
                         const std::vector<bool>& seen);
   const RolloutStatus& status() const { return filter_.status(); }
-  RolloutStatus Forecast(RolloutPath<double>* path) const;
+  RolloutStatus Forecast(int ahead, RolloutPath<double>* path) const;
+  void Push(int person, const Vector4<double>& force);
   // The state at the last frame.
   PendulumState<double> State(int person) const { return TurnedBack(filter_.state(person)); }
 
@@ -87,7 +88,7 @@ SeenFrame FrameAt(const PendulumRecording& recording, int frame);
 // Hips to come, by [person][frame ahead].
 struct TwoForecasts {
   HipPaths physics, input;  // empty of one that has nothing to say
-  // The filter's rollout over all frames.
+  // The filter's rollout from the last frame seen on.
   RolloutStatus input_status;
   RolloutPath<double> input_path;
 };
@@ -95,31 +96,33 @@ struct TwoForecasts {
 class FirstFrames {
  public:
   // The recording is read for people, pushes and frame 0 alone; it and the model must outlive the
-  // object. rollout: the model's hips over as many frames as are looked at; empty: it left the
-  // domain. tail: how much stronger and longer the filter's tail is than the model's.
-  FirstFrames(const IdentifiedModel& model, double tail, const PendulumRecording& recording,
-              HipPaths rollout, int frames);
+  // object. tail: how much stronger and longer the filter's tail is than the model's.
+  FirstFrames(const IdentifiedModel& model, double tail, const PendulumRecording& recording);
 
-  // The next frame; the first is frame 1. Not more than there are.
+  // Pushes a person until the next frame, beside the recording's pushes: N, N m.
+  void Push(int person, const Vector4<double>& force);
+  // The next frame; the first is frame 1. It costs the same however many were seen.
   void Observe(SeenFrame frame);
   int observed() const { return static_cast<int>(seen_.size()) + 1; }  // with frame 0
-  int frames() const { return frames_; }
-  double seconds() const;  // after frame 0
+  double seconds() const;                                              // after frame 0
   bool HasInput() const { return input_.has_value(); }
   const std::vector<SeenFrame>& seen() const { return seen_; }  // from frame 1 on
   // The places where hips were seen last, by person.
   std::vector<Vector3<double>> LastHips() const;
 
-  TwoForecasts Forecasts() const;
+  // The next `ahead` frames.
+  TwoForecasts Forecasts(int ahead) const;
 
  private:
   int LastSeen(int person, int until) const;
   Vector3<double> HipAt(int person, int frame) const;
-  HipPath Physics(int person) const;
+  HipPath Physics(int person, const RolloutPath<double>& rollout) const;
+  Vector3<double> Hip(int person, const PendulumState<double>& state) const;  // of the rollout
 
   const PendulumRecording* recording_;
-  HipPaths rollout_;
-  int frames_;
+  bool rod_moves_;
+  SceneFilter plain_;  // the rollout
+  HipPaths rollout_;   // its hips at the frames seen
   std::optional<SceneFilter> input_;
   std::vector<SeenFrame> seen_;
   std::vector<Vector3<double>> beside_;  // by person: hip less the filter's, where last seen

@@ -27,9 +27,10 @@ OnlinePredictor::OnlinePredictor(const IdentifiedModel& model, const PendulumRec
     : model_(&model),
       recording_(&recording),
       use_(use),
-      rollout_(pushid::Predict(model, recording, num_frames)),
-      frames_(std::make_unique<FirstFrames>(model, model.forecasts->tail, recording, rollout_.hip,
-                                            num_frames)) {}
+      num_frames_(num_frames),
+      frames_(std::make_unique<FirstFrames>(model, model.forecasts->tail, recording)) {
+  if (num_frames != kEndless) rollout_ = pushid::Predict(model, recording, num_frames);
+}
 
 Result<OnlinePredictor> OnlinePredictor::Make(const IdentifiedModel& model,
                                               const PendulumRecording& recording, int num_frames,
@@ -45,7 +46,20 @@ Result<OnlinePredictor> OnlinePredictor::Make(const IdentifiedModel& model,
   return Result<OnlinePredictor>(std::move(predictor));
 }
 
-void OnlinePredictor::Observe(SeenFrame frame) { frames_->Observe(std::move(frame)); }
+void OnlinePredictor::Observe(SeenFrame frame) {
+  if (num_frames_ == kEndless || observed() < num_frames_) frames_->Observe(std::move(frame));
+}
+
+std::optional<double> OnlinePredictor::Share(const TwoForecasts& two) const {
+  return InputShare(model_->forecasts->input_time, two.physics, two.input, frames_->seconds(),
+                    use_);
+}
+
+HipPaths OnlinePredictor::Next(int ahead) const {
+  const TwoForecasts two = frames_->Forecasts(ahead);
+  const std::optional<double> share = Share(two);
+  return share ? Blended(*share, two.physics, two.input) : HipPaths();
+}
 
 void OnlinePredictor::SetForecast(const TwoForecasts& two, double input_share,
                                   Prediction* prediction) const {
@@ -59,7 +73,7 @@ void OnlinePredictor::SetForecast(const TwoForecasts& two, double input_share,
     if (seen.back().Sees(n)) {
       off = (seen.back().states[n].q - prediction->path.At(from - 1, n).q).tail<2>();
     }
-    for (int t = 1; t < frames_->frames(); ++t) {
+    for (int t = 1; t < num_frames_; ++t) {
       PendulumState<double>& state = prediction->path.At(t, n);
       Vector3<double>& hip = prediction->hip[n][t];
       if (t < from) {
@@ -73,7 +87,8 @@ void OnlinePredictor::SetForecast(const TwoForecasts& two, double input_share,
       // filter's.
       state.q.tail<2>() += std::exp(-(t - from + 1) * dt / kErrorTime) * off;
       if (input_share > 0.0) {
-        state.q.tail<2>() += input_share * (two.input_path.At(t, n).q - state.q).tail<2>();
+        state.q.tail<2>() +=
+            input_share * (two.input_path.At(t - from + 1, n).q - state.q).tail<2>();
       }
       state.q.head<2>() = CartUnder(prediction->BodyAt(recording_->scene, t, n), hip, state.q);
       state.qd = (state.q - prediction->path.At(t - 1, n).q) / dt;
@@ -84,10 +99,9 @@ void OnlinePredictor::SetForecast(const TwoForecasts& two, double input_share,
 Prediction OnlinePredictor::Predict() const {
   Prediction prediction = rollout_;
   prediction.observed = observed();
-  if (!prediction.status.ok || observed() == 1) return prediction;
-  const TwoForecasts two = frames_->Forecasts();
-  const std::optional<double> share =
-      InputShare(model_->forecasts->input_time, two.physics, two.input, frames_->seconds(), use_);
+  if (!prediction.status.ok || observed() == 1 || num_frames_ == kEndless) return prediction;
+  const TwoForecasts two = frames_->Forecasts(num_frames_ - observed());
+  const std::optional<double> share = Share(two);
   if (!share) {
     prediction.status = two.input_status;  // asked alone, and left the domain
     prediction.hip.clear();

@@ -11,6 +11,9 @@
 // cart is where the rod puts it; forces, steps and a moving rod are the rollout's. Before
 // anything is seen the prediction is that of Predict, to the bit. Every forecast needs that
 // rollout: where it leaves the domain, nothing is predicted.
+//
+// A controller that runs on and on makes it kEndless, tells what it measures of pushes by Push, and
+// asks for the next frames alone by Next, whose cost does not depend on how many were seen.
 #pragma once
 
 #include <memory>
@@ -26,29 +29,39 @@ MaybeError CheckLearnsFromFrames(const IdentifiedModel& model);
 
 class OnlinePredictor {
  public:
+  static constexpr int kEndless = -1;  // frames for Next, which Predict has none of
+
   // recording: people, pushes and frame 0; its later frames are not looked at. Both must outlive
   // the predictor. Errors: those of CheckLearnsFromFrames; a filter that there is not.
   static Result<OnlinePredictor> Make(const IdentifiedModel& model,
                                       const PendulumRecording& recording, int num_frames,
                                       ForecastUse use = ForecastUse::kBoth);
 
+  // Of the last frame, on a person until the next one, beside the recording's pushes: N, N m. Known
+  // to Next alone.
+  void Push(int person, const Vector4<double>& force) { frames_->Push(person, force); }
   // The next frame, frame 1 first; nothing once all frames were seen.
   void Observe(SeenFrame frame);
   int observed() const { return frames_->observed(); }  // with frame 0
   // A prediction without bands, which take longer than all the rest.
   Prediction Predict() const;
+  // Everybody's hips in so many frames after the last; none where forecasts leave the domain. They
+  // are those of Predict.
+  HipPaths Next(int ahead) const;
   // The distribution of the hips behind those seen, in a prediction that did not fail.
   HipDistribution Distribution(const Prediction& prediction) const;
 
  private:
   OnlinePredictor(const IdentifiedModel& model, const PendulumRecording& recording, int num_frames,
                   ForecastUse use);
+  std::optional<double> Share(const TwoForecasts& two) const;
   void SetForecast(const TwoForecasts& two, double input_share, Prediction* prediction) const;
 
   const IdentifiedModel* model_;
   const PendulumRecording* recording_;
   ForecastUse use_;
-  Prediction rollout_;
+  int num_frames_;
+  Prediction rollout_;  // of all frames
   std::unique_ptr<FirstFrames> frames_;
 };
 

@@ -205,6 +205,33 @@ Eigen::Map<const Eigen::VectorXd> Mapped(const std::vector<double>& values) {
   return {values.data(), static_cast<Index>(values.size())};
 }
 
+bool IsRate(Index row) {
+  const Index channel = row % kFrameResiduals;
+  return channel == 3 || channel == 4 || channel >= 7;
+}
+
+// Raw residuals of whole steps, from those of two halves of each. Rates are between frames, the
+// means of both; the rest of motion is at the end of the second half, and platforms measure at the
+// start of the first.
+std::vector<double> OfWholeSteps(const std::vector<double>& halves, Index motion, Index steps) {
+  using Halves = Eigen::Map<const Eigen::MatrixXd>;  // a column each
+  if (halves.empty()) return {};
+  std::vector<double> whole(halves.size() / 2);
+  const Index plates = static_cast<Index>(whole.size()) - motion;
+  const Halves moved(halves.data(), motion / steps, 2 * steps);
+  const Halves pressed(halves.data() + 2 * motion, plates / steps, 2 * steps);
+  Eigen::Map<Eigen::MatrixXd> of_motion(whole.data(), motion / steps, steps);
+  of_motion = moved(Eigen::all, Eigen::seqN(1, steps, 2));
+  for (Index row = 0; row < of_motion.rows(); ++row) {
+    if (!IsRate(row)) continue;
+    of_motion.row(row) += moved(row, Eigen::seqN(0, steps, 2));
+    of_motion.row(row) *= 0.5;
+  }
+  Eigen::Map<Eigen::MatrixXd>(whole.data() + motion, plates / steps, steps) =
+      pressed(Eigen::all, Eigen::seqN(0, steps, 2));
+  return whole;
+}
+
 // Raw residuals of a recording, and their derivatives.
 struct RawRows {
   Eigen::VectorXd residuals;   // empty: the rollout fails
@@ -347,8 +374,12 @@ class RowsOfRecordings {
     rows->by_column.conservativeResize(rows->residuals.size(),
                                        next + static_cast<Index>(there.size()));
     for (size_t j = 0; j < there.size(); ++j) {
-      if (static_cast<Index>(there[j].size()) != rows->residuals.size()) continue;
       const Column& column = columns_[columns[j]];
+      if (column.assumption != nullptr && column.assumption->halves_steps) {
+        there[j] = OfWholeSteps(there[j], static_cast<Index>(problem_.NumMotionRows(index)),
+                                problem_.recordings()[index].num_frames() - 1);
+      }
+      if (static_cast<Index>(there[j].size()) != rows->residuals.size()) continue;
       auto by = rows->by_column.col(next++);
       by = (Mapped(there[j]) - rows->residuals) / column.step;
       if (column.assumption != nullptr) Correct(*column.assumption, index, *rows, by);
@@ -365,9 +396,7 @@ class RowsOfRecordings {
     // Less by the residual it is that of d(model / (1 + eta) - measured) = d(model) - model.
     const Index motion = static_cast<Index>(problem_.NumMotionRows(index));
     for (Index k = 0; assumption.of_rates && k < motion; ++k) {
-      const Index channel = k % kFrameResiduals;
-      const bool rate = channel == 3 || channel == 4 || channel >= 7;
-      if (rate) column[k] -= rows.residuals[k];
+      if (IsRate(k)) column[k] -= rows.residuals[k];
     }
     // As if the estimates had stayed where they are.
     for (const auto& [of, shift] : assumption.along) {

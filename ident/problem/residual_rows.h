@@ -87,6 +87,7 @@ struct Assumption {
   // It scales measured rates, and what is compared with them instead: their noise would ask for
   // less.
   bool of_rates = false;
+  bool halves_steps = false;  // of_recording makes two of every step
 };
 
 // With robust_jacobian, parts, and the row 1 / sigma of each assumption after those of the priors.

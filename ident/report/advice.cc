@@ -224,6 +224,7 @@ class Adviser {
     const AssumptionTest* surest = nullptr;  // among the terms that are left out
     for (const AssumptionTest& test : result_.verdict.assumptions) {
       if (test.stated > 0.0 || test.error <= 0.0 || test.p >= kTermLevel) continue;
+      if (result_.options.table.Find(test.name) == nullptr) continue;  // no parameter
       if (surest == nullptr || test.p < surest->p) surest = &test;
     }
     if (surest == nullptr) return;

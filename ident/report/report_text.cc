@@ -29,7 +29,7 @@ constexpr size_t kNamedSuspects = 3;
 
 struct Remedy {
   const char* name;  // of an assumption
-  const char* key;   // among stated_errors
+  const char* key;   // among stated_errors; empty: not stated there
   const char* text;
 };
 constexpr Remedy kRemedies[] = {
@@ -42,6 +42,9 @@ constexpr Remedy kRemedies[] = {
     {"frame rate", "frame_rate", "check the frame rate"},
     {"drift of the cameras", "drift_m",
      "check whether positions drift, or people walk before the push"},
+    {"second pushes", "", "check whether people were pushed again after what was recorded"},
+    {"share of the masses in the carts", "", "try --body=anthropometric"},
+    {kStepName, "", "resample the motion (--resample_fps=240)"},
     {kReactionDelayName, "reaction_delay_s", "try --delay=one"}};
 
 // The remedy for a quantity of the laboratory; null where the model has it as a parameter.

@@ -10,6 +10,8 @@
 namespace pushid {
 namespace {
 
+constexpr double kPushedAgain = 0.3;  // s, from the end of a push to one that nobody recorded
+
 // Calls f(push) for every measured push.
 template <typename F>
 void ForMeasured(PendulumRecording* r, const F& f) {
@@ -22,12 +24,16 @@ void Renew(ScenePush* push) {
   *push = MakeScenePush(push->person, push->start_frame, push->kind, std::move(push->force));
 }
 
-void ScaleMeasured(double eta, PendulumRecording* r) {
-  ForMeasured(r, [eta](ScenePush* push) {
-    for (Vector4<double>& row : push->force) row *= 1.0 + eta;
-    Renew(push);
-  });
+// Rows of pushes that were measured, or of those by inverse dynamics.
+void ScaleRows(bool measured, double factor, PendulumRecording* r) {
+  for (ScenePush& push : r->scene.pushes) {
+    if ((push.kind == PushKind::kExternal) != measured) continue;
+    for (Vector4<double>& row : push.force) row *= factor;
+    Renew(&push);
+  }
 }
+
+void ScaleMeasured(double eta, PendulumRecording* r) { ScaleRows(true, 1.0 + eta, r); }
 
 // Later by eta frames, between rows by straight lines.
 void Lag(double eta, PendulumRecording* r) {
@@ -77,11 +83,7 @@ void Shift(double eta, PendulumRecording* r) {
 // All people heavier by the share eta; pushes by inverse dynamics with them.
 void ScaleMasses(double eta, PendulumRecording* r) {
   for (ScenePerson& person : r->scene.people) person.body.mass *= 1.0 + eta;
-  for (ScenePush& push : r->scene.pushes) {
-    if (push.kind == PushKind::kExternal) continue;
-    for (Vector4<double>& row : push.force) row *= 1.0 + eta;
-    Renew(&push);
-  }
+  ScaleRows(false, 1.0 + eta, r);
 }
 
 // More frames a second by the share eta; forces by inverse dynamics are masses times second
@@ -89,11 +91,7 @@ void ScaleMasses(double eta, PendulumRecording* r) {
 void ScaleFrameRate(double eta, PendulumRecording* r) {
   r->scene.dt /= 1.0 + eta;
   for (ScenePerson& person : r->scene.people) person.start.qd *= 1.0 + eta;
-  for (ScenePush& push : r->scene.pushes) {
-    if (push.kind == PushKind::kExternal) continue;
-    for (Vector4<double>& row : push.force) row *= (1.0 + eta) * (1.0 + eta);
-    Renew(&push);
-  }
+  ScaleRows(false, (1.0 + eta) * (1.0 + eta), r);
   for (auto& states : r->states) {
     for (PendulumState<double>& state : states) state.qd *= 1.0 + eta;
   }
@@ -112,6 +110,66 @@ void DriftAlong(double eta, PendulumRecording* r) {
       if (t > 0) r->states[n][t].qd.head<2>() += along / (last * r->scene.dt);
     }
   }
+}
+
+// At frames, and `between` two of them.
+template <typename T, typename Between>
+void Double(const Between& between, std::vector<T>* at) {
+  std::vector<T> doubled;
+  for (const T& next : *at) {
+    if (!doubled.empty()) doubled.push_back(between(doubled.back(), next));
+    doubled.push_back(next);
+  }
+  *at = std::move(doubled);
+}
+
+// Twice as many steps in the same time. Rows of pushes and of the ground's acceleration are means
+// about their frames (ResamplePush) and go between them by straight lines; every half of a step is
+// compared with the frame at its end.
+void HalveSteps(double, PendulumRecording* r) {
+  r->scene.dt *= 0.5;
+  for (ScenePush& push : r->scene.pushes) {
+    std::vector<Vector4<double>> rows;
+    for (const Vector4<double>& row : push.force) {
+      if (!rows.empty()) rows.back() += 0.5 * row;
+      rows.push_back(row);
+      rows.push_back(0.5 * row);
+    }
+    if (!rows.empty()) rows[0] *= 1.5;  // with the half before it: the impulse stays
+    push = MakeScenePush(push.person, 2 * push.start_frame, push.kind, std::move(rows));
+  }
+  GroundMotion& ground = r->scene.ground;
+  ground.dt *= 0.5;
+  Double([](const auto& a, const auto& b) -> GroundPose { return 0.5 * (a + b); }, &ground.poses);
+  Double(
+      [](const GroundStep& a, const GroundStep& b) {
+        return GroundStep{0.5 * (a.acceleration + b.acceleration), 0.5 * (a.gravity + b.gravity)};
+      },
+      &ground.steps);
+  const auto next = [](const auto&, const auto& b) { return b; };
+  for (auto& of_one : r->states) Double(next, &of_one);
+  for (auto& of_one : r->rod_length) Double(next, &of_one);
+  for (auto& of_one : r->hip) Double(next, &of_one);
+  for (auto& of_one : r->weight) Double(next, &of_one);
+  for (auto& of_one : r->plates) Double(next, &of_one);
+}
+
+// So much more of the masses in the carts.
+void LoadCarts(double eta, PendulumRecording* r) {
+  for (ScenePerson& person : r->scene.people) person.body.point_share -= eta;
+}
+
+// Measured pushes come again, eta times as strong.
+void PushTwice(double eta, PendulumRecording* r) {
+  const int later = static_cast<int>(std::lround(kPushedAgain / r->scene.dt));
+  std::vector<ScenePush> again = r->scene.pushes;
+  ForMeasured(r, [&](ScenePush* push) {
+    again.push_back(*push);
+    for (Vector4<double>& row : again.back().force) row *= eta;
+    again.back().start_frame = push->EndFrame() + later;
+    Renew(&again.back());
+  });
+  r->scene.pushes = std::move(again);
 }
 
 constexpr double kFactorOfTwo = 0.6931471805599453;  // its logarithm
@@ -183,12 +241,17 @@ std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint&
     all.push_back({"lag of the pushes", "frames", stated.push_lag_frames, 1e-3, Lag});
     all.push_back({"height of the pushes", "m", stated.push_height_m, 1e-4, Raise});
     all.push_back({"zero of the pushes", "N", stated.push_zero_N, 1e-2, Shift});
+    all.push_back({"second pushes", "", 0.0, 1e-4, PushTwice});
   }
   all.push_back({"masses", "", stated.mass, 1e-4, ScaleMasses});
   all.push_back({"frame rate", "", stated.frame_rate, 1e-4, ScaleFrameRate, nullptr, {}, true});
   all.push_back({"drift of the cameras", "m", stated.drift_m, 1e-4, DriftAlong});
+  all.push_back({kStepName, "", 1.0, -0.5, HalveSteps, nullptr, {}, false, true});
   const FitOptions& options = problem.options();
   const ModelOptions& model = options.model;
+  if (model.stance == Stance::kSlide && model.body != BodyModel::kTable) {
+    all.push_back({"share of the masses in the carts", "", 0.0, 1e-4, LoadCarts});
+  }
   // Robots and rigs have clocks of their own, and a late difference of velocities has no meaning.
   if (model.delay == Delay::kNone && model.body != BodyModel::kTable &&
       model.cart_derivative == CartDerivative::kNone) {

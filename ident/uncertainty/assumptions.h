@@ -18,6 +18,11 @@ namespace pushid {
 // by it, against the problem as it is.
 inline constexpr char kReactionDelayName[] = "reaction delay";
 
+// Semi-implicit Euler at the recording's rate errs at first order in its step, people do not move
+// in steps: eta is how much longer the step is, and the column is the difference that half the step
+// makes (eta = -0.5). Without any step eta is -1, so that +- 1 is stated, whatever the rate.
+inline constexpr char kStepName[] = "step of the integrator";
+
 // The largest of the recordings.
 StatedErrors Stated(const std::vector<PendulumRecording>& recordings);
 

@@ -66,6 +66,30 @@ void OnlinePredict(benchmark::State& state) {
 }
 BENCHMARK(OnlinePredict)->Arg(1)->Arg(5)->Unit(benchmark::kMicrosecond);
 
+// A frame and a second ahead, of an endless predictor that has seen so many frames.
+void OnlineFrameAfter(benchmark::State& state) {
+  const IdentifiedModel model = ModelOfBenchmark(false);
+  const PendulumRecording& recording = RecordingOf(false);
+  OnlinePredictor predictor =
+      OnlinePredictor::Make(model, recording, OnlinePredictor::kEndless).value();
+  const SeenFrame last = FrameAt(recording, kFrames);
+  for (int t = 1; t < state.range(0); ++t) {
+    predictor.Observe(t < kFrames ? FrameAt(recording, t) : last);
+  }
+  if (predictor.Next(kAhead).empty()) state.SkipWithError("a rollout left the domain");
+  for (auto _ : state) {
+    predictor.Observe(last);
+    benchmark::DoNotOptimize(predictor.Next(kAhead));
+  }
+  state.SetLabel(SinglePeople().origin);
+}
+BENCHMARK(OnlineFrameAfter)
+    ->Arg(20)
+    ->Arg(200)
+    ->Arg(2000)
+    ->Arg(20000)
+    ->Unit(benchmark::kMicrosecond);
+
 // Made, shown its first frames, asked once.
 void OnlineRecording(benchmark::State& state) {
   const IdentifiedModel model = ModelOfBenchmark(false);

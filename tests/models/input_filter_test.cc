@@ -70,10 +70,11 @@ Hidden Simulate(const Scene& known, const InputNoise& noise, int frames, double 
   return hidden;
 }
 
+// last: the frame of b at which a forecast begins.
 double HipError(const Scene& scene, const RolloutPath<double>& a, const RolloutPath<double>& b,
-                int frame) {
+                int last, int frame) {
   const Body& body = scene.people[0].body;
-  return (HipPosition(body, a.At(frame, 0).q) - HipPosition(body, b.At(frame, 0).q)).norm();
+  return (HipPosition(body, a.At(frame - last, 0).q) - HipPosition(body, b.At(frame, 0).q)).norm();
 }
 
 // Forecasts from the force that it finds are better than without.
@@ -87,17 +88,18 @@ TEST(InputFilter, FindsForcesThatItIsNotToldOf) {
   double with = 0.0, without = 0.0;
   for (int trial = 0; trial < 60; ++trial) {
     const Hidden hidden = Simulate(scene, noise, 75, 1.0, &random);
-    InputFilter filter(scene, options, {Recovering()}, noise, 75);
-    InputFilter blind(scene, options, {Recovering()}, none, 75);
+    InputFilter filter(scene, options, {Recovering()}, noise);
+    InputFilter blind(scene, options, {Recovering()}, none);
     for (int t = 1; t <= 45; ++t) {
       ASSERT_TRUE(filter.Observe({hidden.measured[t]}, {true}).ok);
       ASSERT_TRUE(blind.Observe({hidden.measured[t]}, {true}).ok);
     }
     RolloutPath<double> path, from_blind;
-    ASSERT_TRUE(filter.Forecast(&path).ok);
-    ASSERT_TRUE(blind.Forecast(&from_blind).ok);
-    with += HipError(scene, path, hidden.path, 57);
-    without += HipError(scene, from_blind, hidden.path, 57);
+    const int ahead = 74 - 45;
+    ASSERT_TRUE(filter.Forecast(ahead, &path).ok);
+    ASSERT_TRUE(blind.Forecast(ahead, &from_blind).ok);
+    with += HipError(scene, path, hidden.path, 45, 57);
+    without += HipError(scene, from_blind, hidden.path, 45, 57);
   }
   EXPECT_LT(with, 0.8 * without);
 }
@@ -111,12 +113,13 @@ TEST(InputFilter, AKnownPushNeedsNoOther) {
   InputNoise exact = noise;
   exact.measured = 1e-9;
   const Hidden hidden = Simulate(scene, exact, 75, 0.0, &random);
-  InputFilter filter(scene, options, {Recovering()}, noise, 75);
+  InputFilter filter(scene, options, {Recovering()}, noise);
   for (int t = 1; t <= 30; ++t) filter.Observe({hidden.measured[t]}, {true});
   EXPECT_LT(filter.Input(0).norm(), 1e-4);
   RolloutPath<double> path;
-  ASSERT_TRUE(filter.Forecast(&path).ok);
-  EXPECT_LT(HipError(scene, path, hidden.path, 74), 1e-6);
+  const int ahead = 74 - 30;
+  ASSERT_TRUE(filter.Forecast(ahead, &path).ok);
+  EXPECT_LT(HipError(scene, path, hidden.path, 30, 74), 1e-6);
 }
 
 // What a measurement moves settles and stays so: rounding once made the covariance lopsided, and
@@ -139,6 +142,38 @@ TEST(InputPlane, SettlesAndStays) {
   }
 }
 
+// Not corrected it is the rollout, however late people react and however many frames there were;
+// pushes may be told as they come.
+TEST(InputFilter, WithoutNoiseGoesOnAsTheRollout) {
+  constexpr int kFrames = 400;
+  ModelOptions options = Isotropic();
+  options.delay = Delay::kOne;
+  ParameterSet<double> p = Recovering();
+  p[kReactionDelay] = 0.06, p[kKdTheta] = p[kKdPhi] = 150.0;
+  Scene scene = OnePerson();
+  scene.people[0].start.q.tail<2>().setZero();
+  std::vector<GroundPose> poses;
+  for (int t = 0; t < kFrames; ++t) poses.push_back({0.02 * std::sin(0.05 * t), 0, 0, 0});
+  scene.ground = GroundThrough(poses, scene.dt);
+  scene.pushes[0].start_frame = 150;
+  RolloutPath<double> path;
+  ASSERT_TRUE(Rollout<double>(scene, options, {p}, InitialVelocities(scene), kFrames, &path).ok);
+  const std::vector<Vector4<double>> rows = scene.pushes[0].force;
+  scene.pushes.clear();
+  InputFilter filter(scene, options, {p}, std::nullopt);
+  RolloutPath<double> ahead;
+  for (int t = 0; t + 1 < kFrames; ++t) {
+    if (t >= 150 && t < 158) filter.Push(0, rows[t - 150]);
+    if (t >= 160 || (t >= 100 && t < 130)) {
+      ASSERT_TRUE(filter.Forecast(kFrames - 1 - t < 20 ? kFrames - 1 - t : 20, &ahead).ok);
+      const int last = ahead.num_frames() - 1;
+      EXPECT_LT((ahead.At(last, 0).q - path.At(t + last, 0).q).norm(), 1e-12) << t;
+    }
+    ASSERT_TRUE(filter.Observe({path.At(t + 1, 0)}, {false}).ok);
+    ASSERT_LT((filter.state(0).q - path.At(t + 1, 0).q).norm(), 1e-12) << t;
+  }
+}
+
 // A frame that was not seen may say anything.
 TEST(InputFilter, LooksAtNothingUnseen) {
   const InputNoise noise;
@@ -148,7 +183,7 @@ TEST(InputFilter, LooksAtNothingUnseen) {
   const Hidden hidden = Simulate(scene, noise, 40, 1.0, &random);
   Vector4<double> inputs[2];
   for (int wild : {0, 1}) {
-    InputFilter filter(scene, options, {Recovering()}, noise, 40);
+    InputFilter filter(scene, options, {Recovering()}, noise);
     for (int t = 1; t <= 20; ++t) {
       PendulumState<double> state = hidden.measured[t];
       if (wild && t == 12) state.q.setConstant(3.0);
@@ -168,8 +203,8 @@ TEST(InputFilter, DoesNotCareWhereForward) {
   across.people[0].start.q.setZero();
   along.pushes = {MakeScenePush(0, 0, PushKind::kExternal, {{90.0, 0.0, 70.0, 0.0}})};
   across.pushes = {MakeScenePush(0, 0, PushKind::kExternal, {{0.0, 90.0, 0.0, -70.0}})};
-  InputFilter first(along, options, {Recovering()}, noise, 30);
-  InputFilter second(across, options, {Recovering()}, noise, 30);
+  InputFilter first(along, options, {Recovering()}, noise);
+  InputFilter second(across, options, {Recovering()}, noise);
   for (int t = 1; t < 20; ++t) {
     PendulumState<double> state, turned;
     state.q = {1e-3 * t * t, 0.0, 4e-3 * t, 0.0};
@@ -199,7 +234,7 @@ TEST(InputFilter, OfTwoInContactItFindsWhoIsPushed) {
       MakeScenePush(0, 0, PushKind::kExternal, std::vector<Vector4<double>>(60, {80, 0, 0, 0})));
   RolloutPath<double> path;
   ASSERT_TRUE(Rollout<double>(pushed, options, {p, p}, InitialVelocities(pushed), 60, &path).ok);
-  InputFilter filter(scene, options, {p, p}, InputNoise{0.2, 2.0, 0.001, 0.1}, 60);
+  InputFilter filter(scene, options, {p, p}, InputNoise{0.2, 2.0, 0.001, 0.1});
   for (int t = 1; t < 50; ++t) {
     ASSERT_TRUE(filter.Observe({path.At(t, 0), path.At(t, 1)}, {true, true}).ok);
   }

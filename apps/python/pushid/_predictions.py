@@ -40,10 +40,11 @@ def simulate_formation(result, shape="line", people=10, *, spacing=0.45, pushed=
 class OnlinePredictor:
     """A prediction that is updated with every observed frame; recording: people, pushes and frame 0.
 
+    frames: of predict; -1 for next alone, without an end.
     forecast: "both" together, "physics" (the rollout) or "input" (a filter with an unknown force).
     """
 
-    def __init__(self, result, recording, frames, *, forecast="both"):
+    def __init__(self, result, recording, frames=-1, *, forecast="both"):
         self._online = _pushid.Online(result._model, *checked(recording), frames, forecast)
 
     def observe(self, hip, left_ankle, right_ankle):
@@ -58,6 +59,14 @@ class OnlinePredictor:
     def predict(self):
         """As Result.predict, from the frames observed so far, without bands."""
         return self._online.predict()
+
+    def push(self, force, person=0):
+        """A push until the next frame, beside the recording's: [Fx, Fy, Mtheta, Mphi] in N and N m. Known to next alone."""
+        self._online.push(person, np.asarray(force, dtype=float))
+
+    def next(self, frames):
+        """Hips in the next frames: (frames, people, 3), in m; their cost does not depend on how many were observed."""
+        return self._online.next(frames)
 
 
 class Restoration:

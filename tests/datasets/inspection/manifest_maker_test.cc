@@ -99,6 +99,38 @@ TEST_F(ManifestMakerTest, WhatIsMadeCanBeLoaded) {
   EXPECT_EQ(loaded[2].people[0].mass_kg, 80.0);
 }
 
+// Plates, ground and groups without editing JSON; wrong ones are refused by the manifest's reader.
+TEST_F(ManifestMakerTest, SetsAnyKeyOfAllRecordings) {
+  options_.set = {"force_plates.file=plates/{id}.csv",
+                  "force_plates.plates=[\"left\"]",
+                  "ground.csv=ground/{subject}.csv",
+                  "group=older",
+                  "initial_velocity=free",
+                  "first_frame=3"};
+  const MadeManifest made = Unwrapped(MakeManifest(options_));
+  ASSERT_FALSE(WriteManifest(options_.manifest_path, made.manifest));
+  const Manifest read = Unwrapped(ReadManifest(options_.manifest_path));
+  ASSERT_EQ(read.recordings.size(), 3u);
+  const ManifestRecording& second = read.recordings[1];
+  ASSERT_EQ(second.plates.size(), 1u);
+  EXPECT_EQ(second.plates[0].file, "plates/anna_weak_2.csv");
+  EXPECT_EQ(second.plates[0].plates, std::vector<std::string>{"left"});
+  EXPECT_EQ(second.plates[0].use, PlateUse::kMeasure);
+  EXPECT_EQ(second.ground.csv, "ground/anna.csv");
+  EXPECT_EQ(second.labels.Of("group"), "older");
+  EXPECT_EQ(second.initial_velocity, InitialVelocity::kFree);
+  EXPECT_EQ(second.first_frame, 3);
+  EXPECT_EQ(second.subjects[0].mass_kg, 62.0);
+  const auto message = [&](const char* set) {
+    options_.set = {set};
+    return MakingMessage();
+  };
+  EXPECT_TRUE(Contains(message("group"), "--set is 'group'; it must be KEY=VALUE"));
+  EXPECT_TRUE(Contains(message("group={age}"), "names of the pattern"));
+  EXPECT_TRUE(Contains(message("force_plates.height=2"), "--set=force_plates.height=2: "));
+  EXPECT_TRUE(Contains(message("initial_velocity=fast"), "it must be zero, estimated or free"));
+}
+
 // A manifest without the rates that were written means the same.
 TEST_F(ManifestMakerTest, WritesTheRatesThatLoadingTakes) {
   MadeManifest made = Unwrapped(MakeManifest(options_));

@@ -62,6 +62,44 @@ TEST_F(OnlinePredictorTest, PhysicsIsTheRolloutMovedOn) {
   }
 }
 
+// As far as Predict, and without an end: window after window.
+TEST_F(OnlinePredictorTest, NextIsThePredictionAsFarAsItGoes) {
+  SyntheticOptions study = study_;
+  study.frames = 260;
+  const auto recordings = PlantEffects(model_, MakePendulums(study), {0.4, 0.1, 11});
+  const PendulumRecording& r = recordings[0];
+  auto whole = OnlinePredictor::Make(model_, r, r.num_frames());
+  auto endless = OnlinePredictor::Make(model_, r, OnlinePredictor::kEndless);
+  for (int t = 1; t + 1 < r.num_frames(); ++t) {
+    whole.value().Observe(FrameAt(r, t));
+    endless.value().Observe(FrameAt(r, t));
+    if (t % 20 != 1) continue;
+    const Prediction prediction = whole.value().Predict();
+    const int rest = r.num_frames() - t - 1;
+    for (int ahead : {1, rest}) {
+      const HipPaths hips = endless.value().Next(ahead);
+      ASSERT_EQ(static_cast<int>(hips[0].size()), ahead);
+      EXPECT_LT((hips[0].back() - prediction.hip[0][t + ahead]).norm(), 1e-9) << t;
+    }
+  }
+}
+
+// What is measured of a push as it comes is what the recording would have said.
+TEST_F(OnlinePredictorTest, PushesAreToldAsTheyCome) {
+  const PendulumRecording& r = recordings_[0];
+  PendulumRecording unpushed = r;
+  unpushed.scene.pushes.clear();
+  model_.options.push_tail = PushTail::kNone;  // which pushes as they come have none of
+  OnlinePredictor told = OnlinePredictor::Make(model_, unpushed, OnlinePredictor::kEndless).value();
+  const ScenePush& push = r.scene.pushes[0];
+  for (int t = 1; t < 30; ++t) {
+    if (push.Active(t - 1)) told.Push(0, push.force[t - 1 - push.start_frame]);
+    told.Observe(FrameAt(r, t));
+  }
+  const HipPaths a = told.Next(30), b = After(0, 30).Next(30);
+  EXPECT_LT((a[0].back() - b[0].back()).norm(), 1e-9);
+}
+
 TEST_F(OnlinePredictorTest, FramesTell) {
   double without = 0.0, with = 0.0;
   for (size_t i = 0; i < recordings_.size(); ++i) {

@@ -160,6 +160,107 @@ TEST(ModelVerdict, TotalErrorsFollowWhatIsStated) {
   }
 }
 
+// Every fourth frame of 240 a second; a row of a push is the mean about its frame.
+std::vector<PendulumRecording> Thinned(const std::vector<PendulumRecording>& recordings) {
+  std::vector<PendulumRecording> thinned = recordings;
+  for (PendulumRecording& r : thinned) {
+    const PendulumRecording all = r;
+    r.scene.dt *= 4.0;
+    r.states[0].clear(), r.hip[0].clear(), r.rod_length[0].clear();
+    for (int t = 0; t < all.num_frames(); t += 4) {
+      r.hip[0].push_back(all.hip[0][t]);
+      r.rod_length[0].push_back(all.rod_length[0][t]);
+      r.states[0].push_back(all.states[0][t]);
+      const Vector4<double> way = all.states[0][t].q - all.states[0][std::max(0, t - 4)].q;
+      r.states[0].back().qd = way / r.scene.dt;
+    }
+    for (ScenePush& push : r.scene.pushes) {
+      std::vector<Vector4<double>> rows;
+      for (int row = 0; 4 * row - 2 < static_cast<int>(push.force.size()); ++row) {
+        rows.emplace_back(Vector4<double>::Zero());
+        for (int k = 4 * row - 2; k <= 4 * row + 2; ++k) {
+          const bool inside = k >= 0 && k < static_cast<int>(push.force.size());
+          if (inside) rows.back() += (std::abs(k - 4 * row) == 2 ? 0.125 : 0.25) * push.force[k];
+        }
+      }
+      push = MakeScenePush(push.person, push.start_frame / 4, push.kind, rows);
+    }
+  }
+  return thinned;
+}
+
+// Rolled out in steps of a quarter, recordings ask for a step that is three quarters shorter.
+TEST(ModelVerdict, TheIntegratorIsAStatedError) {
+  SyntheticOptions study = Study(2);
+  study.fps = 240.0;
+  study.frames = 360;
+  study.joint_noise_m = 1e-4;
+  study.subject_spread = 0.01;
+  study.lean_sigma_rad = 0.0;
+  const FitResult result = FitOf(Thinned(MakePendulums(study)));
+  const AssumptionTest* step = Find(result.verdict, kStepName);
+  ASSERT_NE(step, nullptr);
+  EXPECT_EQ(step->stated, 1.0);
+  EXPECT_NEAR(step->wanted, -0.75, 0.15);
+  const Estimate& mu = *FindEstimate(result.estimates, "mu");
+  EXPECT_LT(mu.total->lower, study.parameters[kMu]);
+  EXPECT_GT(mu.total->upper, study.parameters[kMu]);
+}
+
+// Half of a step has the impulse of the whole, and its rates are the means of both halves.
+TEST(ModelVerdict, HalfStepsEndWhereWholeOnesDo) {
+  SyntheticOptions study = TinyStudy();
+  study.ground = GroundKind::kNone;
+  study.push_kind = PushKind::kExternal;
+  const auto recordings = MakePendulums(study);
+  FitOptions options = MakePreset("tail").value();
+  ASSERT_FALSE(PrepareFit(recordings, &options));
+  const FitProblem problem(recordings, options);
+  for (const Assumption& a : AssumptionsOf(problem, problem.NominalPoint())) {
+    if (!a.halves_steps) continue;
+    for (PendulumRecording halved : recordings) {
+      const PendulumRecording whole = halved;
+      a.of_recording(a.step, &halved);
+      EXPECT_EQ(halved.num_frames(), 2 * whole.num_frames() - 1);
+      EXPECT_EQ(halved.hip[0][2], whole.hip[0][1]);
+      EXPECT_EQ(halved.hip[0][1], whole.hip[0][1]);
+      const ScenePush &a_push = halved.scene.pushes[0], &b_push = whole.scene.pushes[0];
+      EXPECT_LT((a_push.mean - b_push.mean).norm(), 1e-9 * b_push.mean.norm());
+      EXPECT_EQ(a_push.EndFrame(), 2 * b_push.EndFrame());
+    }
+  }
+}
+
+// Who was pushed again, or has more of the mass in the feet, is named; a drag that grows with speed
+// is the term c_q.
+TEST(ModelVerdict, NamesSecondPushesCartSharesAndQuadraticDrag) {
+  SyntheticOptions study = Study(3);
+  study.subject_spread = 0.02;
+  study.joint_noise_m = 5e-4;
+  const auto wanted = [&](const std::vector<PendulumRecording>& recordings, const char* name) {
+    const AssumptionTest* test = Find(FitOf(recordings).verdict, name);
+    EXPECT_NE(test, nullptr) << name;
+    return test == nullptr ? AssumptionTest{} : *test;
+  };
+  std::vector<PendulumRecording> recordings = MakePendulums(study);
+  for (PendulumRecording& r : recordings) {  // by so much less than the scene says
+    r.scene.pushes.push_back(ScalePushes(r.scene, 0.1).pushes[0]);
+    r.scene.pushes.back().start_frame = r.scene.pushes[0].EndFrame() + 18;
+  }
+  const AssumptionTest again = wanted(recordings, "second pushes");
+  EXPECT_NEAR(again.wanted, -0.1, 0.03);
+  EXPECT_LT(again.t, -3.0);
+
+  recordings = MakePendulums(study);
+  for (PendulumRecording& r : recordings) r.scene.people[0].body.point_share = 0.7;
+  const AssumptionTest share = wanted(recordings, "share of the masses in the carts");
+  EXPECT_LT(share.wanted, 0.0);
+  EXPECT_LT(share.p, 0.05);
+
+  study.parameters[kCq] = 0.5;
+  EXPECT_LT(wanted(MakePendulums(study), "c_q").p, 0.05);
+}
+
 // Much noise on little motion: what is measured of rates is noise, and asks for nothing.
 TEST(ModelVerdict, NoiseAsksForNoOtherFrameRate) {
   SyntheticOptions study = Study(1);
