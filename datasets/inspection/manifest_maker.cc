@@ -205,31 +205,30 @@ class Maker {
     SetAxes(&recording);
     recording.length_unit = options_.length_unit;
     recording.length_scale = options_.length_scale;
-    if (MaybeError wrong = SetKeys(values, &recording)) return wrong;
+    SetKeys(values, &recording);
     made_.manifest.recordings.push_back(recording);
   }
 
   // An entry without masses, which Make refuses, is not read again.
-  MaybeError SetKeys(NameValues values, ManifestRecording* recording) const {
-    if (!massless_.empty()) return std::nullopt;
+  void SetKeys(NameValues values, ManifestRecording* recording) const {
+    if (!massless_.empty()) return;
     values["id"] = recording->id;
     for (const std::string& item : options_.set) {
       const std::size_t equals = item.find('=');
       const Error wrong{"--set is " + Quoted(item) +
                         "; it must be KEY=VALUE, as in force_plates.file=plates/{id}.csv, with "
                         "{id} and names of the pattern"};
-      if (equals == std::string::npos || equals == 0) return wrong;
+      if (equals == std::string::npos || equals == 0) throw wrong;
       std::optional<std::string> value = item.substr(equals + 1);
       if (Holds(*value, "{")) {
         const Result<NamePattern> pattern = NamePattern::Parse(*value);
         value = pattern.ok() ? pattern.value().Fill(values) : std::nullopt;
       }
-      if (!value) return wrong;
+      if (!value) throw wrong;
       Result<ManifestRecording> set = WithKey(*recording, item.substr(0, equals), *value);
-      if (!set.ok()) return Error{"--set=" + item + ": " + set.error().ToString()};
+      if (!set.ok()) throw Error{"--set=" + item + ": " + set.error().ToString()};
       *recording = std::move(set.value());
     }
-    return std::nullopt;
   }
 
   // Written even where they are the default, so that a mapping's do not win.
