@@ -87,8 +87,9 @@ std::function<NormalSource()> NormalsOf(uint64_t seed) {
 }
 
 RestorationView ViewOf(const Json& settings) {
-  if (!settings.contains(kViewKey)) return RestorationView::kPendulum;
-  return EnumFrom<RestorationView>(settings, kViewKey);
+  RestorationView view = RestorationView::kPendulum;
+  JsonArchive(settings).Newer(kViewKey, view);
+  return view;
 }
 
 }  // namespace
@@ -217,9 +218,7 @@ std::unique_ptr<Restoration> MakeWindow(const Json& settings, TensorFields* read
 
 std::unique_ptr<Restoration> MakeCvae(const Json& settings, TensorFields* reader) {
   CvaeWeights weights;
-  if (settings.contains(kCvaeCoordinatesKey)) {
-    weights.layout.coordinates = EnumFrom<CvaeCoordinates>(settings, kCvaeCoordinatesKey);
-  }
+  JsonArchive(settings).Newer(kCvaeCoordinatesKey, weights.layout.coordinates);
   weights.layout.pendulum = ViewOf(settings) == RestorationView::kPendulum;
   weights.layout.halves = settings.value(kCvaeHalvesKey, true);
   return std::make_unique<CvaeRestoration>(TakeTensors("", std::move(weights), reader),
