@@ -16,20 +16,12 @@
 namespace pushid {
 
 // An object's state, for pickle, copy and other processes.
-template <class Archive>
-void Fields(Archive& a, Push& p) {
-  PUSHID_FIELDS(a, p, person, start_frame, force, file);
-}
-
-template <class Archive>
-void Fields(Archive& a, PlateSample& sample) {
-  PUSHID_FIELDS(a, sample, force, centre, weight);
-}
+PUSHID_FIELDS_OF(Push, person, start_frame, force, file)
+PUSHID_FIELDS_OF(PlateSample, force, centre, weight)
 
 // Roles are of the joints, and go with them. A BVH file's skeleton stays behind: only the programs
 // write motions back into such files.
-template <class Archive>
-void Fields(Archive& a, RecordedPerson& p) {
+void Fields(JsonArchive& a, RecordedPerson& p) {
   PUSHID_FIELDS(a, p, subject_id, mass_kg);
   a("numbers", p.known.numbers);
   a("texts", p.known.texts);
@@ -44,13 +36,11 @@ void Fields(Archive& a, RecordedPerson& p) {
   a("back", p.roles.back);
 }
 
-template <class Archive>
-void Fields(Archive& a, StatedErrors& s) {
+void Fields(JsonArchive& a, StatedErrors& s) {
   for (const StatedErrorRow& row : kStatedErrors) a(row.key, s.*row.value);
 }
 
-template <class Archive>
-void Fields(Archive& a, Recording& r) {
+void Fields(JsonArchive& a, Recording& r) {
   a("id", r.id);
   std::map<std::string, std::string> labels;
   for (const std::string& key : r.labels.Keys()) labels[key] = r.labels.Of(key);

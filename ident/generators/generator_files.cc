@@ -212,14 +212,14 @@ void Fields(JsonArchive& a, GeneratorSettings& settings) {
   std::vector<std::string> kinds;
   for (const PushKind kind : settings.push_kinds) kinds.push_back(NameOf(kind));
   if (a.Has("push_kinds", !kinds.empty())) a("push_kinds", kinds);
-  for (size_t i = 0; Archive::kReads && i < kinds.size(); ++i) {
+  for (size_t i = 0; a.reads() && i < kinds.size(); ++i) {
     const std::optional<PushKind> kind = FromName<PushKind>(kinds[i]);
     Demand(kind.has_value(), "push_kinds has '" + kinds[i] + "', which is not a kind of push");
     settings.push_kinds.push_back(*kind);
   }
   a.Check(settings.observed >= 1 && settings.predicted >= 1 && settings.rate > 0.0,
           "observed, predicted and rate_hz must be positive");
-  if (Archive::kReads) CheckLayout(settings.layout);
+  if (a.reads()) CheckLayout(settings.layout);
 }
 
 MaybeError WriteGenerator(const std::string& folder, const TrainedNetworks& trained) {
