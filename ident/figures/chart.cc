@@ -106,7 +106,8 @@ class Panel {
     for (const ChartBar& bar : chart_.bars) {
       const double from = Inside(bar.from), to = Inside(bar.to), y = y_(bar.row);
       const double height = chart_.bar * chart_.row;
-      svg_.Rect({std::min(from, to), y - 0.5 * height, std::abs(to - from), height}, bar.look);
+      svg_.Rect({std::min(from, to), y - 0.5 * height, std::abs(to - from), height}, bar.look,
+                bar.tooltip);
     }
     for (double level : chart_.levels) svg_.Line(left_, y_(level), right_, y_(level), kLimitLook);
     for (double mark : chart_.marks) svg_.Line(x_(mark), top_, x_(mark), bottom_, kMarkLook);
