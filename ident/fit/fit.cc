@@ -253,6 +253,19 @@ FitResult ResultOf(const SolvedFit& fit) {
   return result;
 }
 
+// The covariance of a network's weights has no meaning for a reader and fills files: from here on
+// the covariance is that of everything else, whatever the weights are. Bands draw from it with the
+// weights as they are fitted, and so may be too wide where a network trades with a gain.
+void DropNetworkWeights(size_t weights, FitResult* result) {
+  if (weights == 0) return;
+  Uncertainty& u = result->uncertainty;
+  const Eigen::Index size = u.covariance.rows() - static_cast<Eigen::Index>(weights);
+  u.covariance = u.covariance.topLeftCorner(size, size).eval();
+  u.correlation = u.correlation.topLeftCorner(size, size).eval();
+  u.estimates.resize(size);
+  result->nuisance.resize(result->nuisance.size() - weights);
+}
+
 FitResult Judge(const SolvedFit& fit) {
   FitResult result = ResultOf(fit);
   if (!result.ok()) return result;
@@ -309,16 +322,7 @@ FitResult Judge(const SolvedFit& fit) {
             : "the likelihood still increased in the last round of solving");
   }
   result.work = work.parts();
-  if (optimum.weights.empty()) return result;
-  // The covariance of a network's weights has no meaning for a reader and fills files: from here on
-  // the covariance is that of everything else, whatever the weights are. Bands draw from it with
-  // the weights as they are fitted, and so may be too wide where a network trades with a gain.
-  Uncertainty& u = result.uncertainty;
-  const Eigen::Index size = u.covariance.rows() - static_cast<Eigen::Index>(optimum.weights.size());
-  u.covariance = u.covariance.topLeftCorner(size, size).eval();
-  u.correlation = u.correlation.topLeftCorner(size, size).eval();
-  u.estimates.resize(size);
-  result.nuisance.resize(result.nuisance.size() - optimum.weights.size());
+  DropNetworkWeights(optimum.weights.size(), &result);
   return result;
 }
 
