@@ -40,13 +40,13 @@ TEST(ParameterMap, ASlopeMovesItsTargetAndWhatFollowsIt) {
   EXPECT_EQ(old[kSlope], shared[1]);
   EXPECT_NEAR(map.Apply<double>(shared, nullptr)[kKpTheta], 1500.0, 1e-9);
   // Two columns, each by two parameters; of nobody in particular a slope moves nothing.
-  const std::vector<ColumnEntry> entries = map.Entries(old, -1, &ten_years);
+  const std::vector<ColumnEntry> entries = map.Entries(old, &ten_years);
   ASSERT_EQ(entries.size(), 4u);
   EXPECT_EQ(entries[2].column, 1);
   EXPECT_EQ(entries[2].parameter, kKpTheta);
   EXPECT_EQ(entries[3].parameter, kKpPhi);
   EXPECT_NEAR(entries[2].derivative, 10.0 * old[kKpTheta], 1e-9);
-  EXPECT_EQ(map.Entries(old, -1)[2].derivative, 0.0);
+  EXPECT_EQ(map.Entries(old)[2].derivative, 0.0);
 }
 
 // A slope that is held, and whose target is held, still acts.
