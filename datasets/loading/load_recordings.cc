@@ -200,12 +200,11 @@ class PersonLoader {
       motion_.parents.push_back(bvh.skeleton.joints[joint].parent);
     }
     if (options_.keep_all_joints) {
+      const std::ptrdiff_t channels = bvh.skeleton.num_channels();
       const auto first =
-          bvh.values.begin() + std::min(entry_.first_frame, bvh.num_frames() - 1) *
-                                   static_cast<std::ptrdiff_t>(bvh.skeleton.num_channels());
-      motion_.skeleton = FileSkeleton{std::move(bvh.skeleton),
-                                      {first, first + bvh.skeleton.num_channels()},
-                                      motion_.metres_per_unit};
+          bvh.values.begin() + std::min(entry_.first_frame, bvh.num_frames() - 1) * channels;
+      motion_.skeleton =
+          FileSkeleton{std::move(bvh.skeleton), {first, first + channels}, motion_.metres_per_unit};
     }
   }
 
