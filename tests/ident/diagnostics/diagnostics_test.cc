@@ -202,6 +202,7 @@ TEST(Advice, RepeatsEveryChangedFlagOnceAndKeepsLists) {
 
 TEST(Advice, IsNotWhatIsOnAlready) {
   FitResult result;
+  result.options.table = BaseTable();
   result.recordings.resize(3);
   result.verdict.assumptions = {{"b_x", "m/s/rad", 0.0, 2.0, 1.0, 2.0, 0.06, {}},
                                 {"t_x", "m/s", 0.0, 6.0, 1.0, 6.0, 1e-5, {}}};
