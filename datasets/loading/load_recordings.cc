@@ -201,8 +201,9 @@ class PersonLoader {
     }
     if (options_.keep_all_joints) {
       const std::ptrdiff_t channels = bvh.skeleton.num_channels();
+      const auto rows = static_cast<std::ptrdiff_t>(bvh.values.size()) / channels;
       const auto first =
-          bvh.values.begin() + std::min(entry_.first_frame, bvh.num_frames() - 1) * channels;
+          bvh.values.begin() + channels * std::min<std::ptrdiff_t>(entry_.first_frame, rows - 1);
       motion_.skeleton =
           FileSkeleton{std::move(bvh.skeleton), {first, first + channels}, motion_.metres_per_unit};
     }

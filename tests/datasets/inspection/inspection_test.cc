@@ -262,7 +262,7 @@ TEST_F(InspectionTest, C3d) {
   cell.platforms.clear();
   cell.analog[6].unit = "kN";
   ASSERT_FALSE(WriteC3d(Path("cell.c3d"), cell));
-  EXPECT_TRUE(Contains(Of("cell.c3d"), "peak 40000 N"));
+  EXPECT_TRUE(Contains(Of("cell.c3d"), "peak -40000 N"));
 }
 
 TEST_F(InspectionTest, OtherFiles) {

@@ -123,7 +123,11 @@ TEST(FitProblem, BlocksOfAStage) {
     return more;
   };
   FitOptions options = MakePreset("tail").value();
-  EXPECT_EQ(ClustersOf(FitProblem(recordings, options), kFirst), with({kPrior, kPooling, kPrior}));
+  // All free parameters of the preset have priors, so that a first stage adds none.
+  EXPECT_EQ(ClustersOf(FitProblem(recordings, options), kFirst), with({kPrior, kPooling}));
+  FitOptions without = options;
+  for (ParameterSpec& spec : without.table.specs) spec.prior.reset();
+  EXPECT_EQ(ClustersOf(FitProblem(recordings, without), kFirst), with({kPooling, kPrior}));
   EXPECT_EQ(ClustersOf(FitProblem(recordings, options), kLast),
             with({kPrior, kPooling, kSettling}));
   FitOptions mlp = Unwrapped(MakeFitOptions({{"preset", "tail"}, {"self_force", "mlp:4"}}));

@@ -100,7 +100,7 @@ class AdjointOfPeople : public testing::TestWithParam<GroupRegime> {};
 
 TEST_P(AdjointOfPeople, GradientEqualsForwardSensitivities) {
   const GroupRegime& regime = GetParam();
-  Random random(81);
+  Random random(6);
   for (const Model& model : EveryModel(regime.weight, &random)) {
     SCOPED_TRACE(ModelName(model));
     const std::vector<PendulumRecording> made = Groups(model.options, regime, &random);
