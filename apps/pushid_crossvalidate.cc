@@ -6,6 +6,7 @@
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
+#include "datasets/files/json_file.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/problem/folds.h"
 #include "ident/validation/crossvalidation.h"

@@ -7,6 +7,7 @@
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/restoration_flags.h"
+#include "datasets/files/json_file.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/formations/formation_run.h"
 #include "ident/parameters/presets.h"

@@ -5,6 +5,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/published_flags.h"
 #include "apps/flags/recording_flags.h"
+#include "datasets/files/json_file.h"
 #include "datasets/files/random.h"
 #include "datasets/loading/generator_data.h"
 #include "ident/bodies/animation.h"

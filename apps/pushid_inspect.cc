@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "apps/flags/command_line.h"
+#include "datasets/files/json_file.h"
 #include "datasets/inspection/inspection.h"
 #include "datasets/manifest/joint_mapping.h"
 #include "ident/figures/chart.h"

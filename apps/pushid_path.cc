@@ -1,6 +1,7 @@
 // apps: pushid-path: most probable paths under a model's process noise.
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
+#include "datasets/files/json_file.h"
 #include "ident/figures/text_table.h"
 #include "ident/forecasts/most_probable_path.h"
 

@@ -5,6 +5,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/overwrite_flag.h"
 #include "apps/flags/recording_flags.h"
+#include "datasets/files/json_file.h"
 #include "datasets/formats/force_csv.h"
 #include "datasets/inspection/findings.h"
 #include "datasets/manifest/recording.h"

@@ -5,6 +5,7 @@
 #include "apps/flags/published_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/training_flags.h"
+#include "datasets/files/json_file.h"
 #include "ident/model/model_json.h"
 #include "ident/training/generator_training.h"
 

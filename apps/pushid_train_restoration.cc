@@ -4,6 +4,7 @@
 #include "apps/flags/postprocess_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/training_flags.h"
+#include "datasets/files/json_file.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/model/model_json.h"
 

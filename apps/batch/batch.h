@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/files/json_file.h"
 #include "datasets/manifest/manifest.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/uncertainty/uncertainty.h"

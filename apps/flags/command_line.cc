@@ -1,6 +1,8 @@
 // apps: flags, help, and what every program does before and after its job.
 #include "apps/flags/command_line.h"
 
+#include "datasets/files/json_file.h"
+
 #ifdef __GLIBC__
 #include <malloc.h>
 #include <sys/mman.h>
@@ -306,6 +308,10 @@ std::map<std::string, std::string> EffectiveFlags() {
     if (IsPartOfResult(flag)) flags[flag.name] = ShortestNumber(flag, flag.current_value);
   }
   return flags;
+}
+
+void WriteIfNamed(const std::string& file, const nlohmann::ordered_json& json) {
+  if (!file.empty()) OrFail(WriteJson(file, json));
 }
 
 nlohmann::ordered_json ResultHead(const char* schema) {

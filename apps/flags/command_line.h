@@ -1,6 +1,6 @@
 // apps: the command line of every program: help, version, common checks, what is given and what
-// goes with what. A program includes it before all else: it brings gflags and the files, names,
-// numbers and JSON that every program reads and writes.
+// goes with what. A program includes it before all else: it brings gflags and the files, names and
+// numbers that every program reads and writes.
 #pragma once
 
 #include <gflags/gflags.h>
@@ -9,14 +9,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
@@ -79,9 +78,7 @@ std::map<std::string, std::string> EffectiveFlags();
 nlohmann::ordered_json ResultHead(const char* schema);
 
 // Writes the JSON of a result; nothing where no file is named.
-inline void WriteIfNamed(const std::string& file, const nlohmann::ordered_json& json) {
-  if (!file.empty()) OrFail(WriteJson(file, json));
-}
+void WriteIfNamed(const std::string& file, const nlohmann::ordered_json& json);
 
 // Names of flags that are not at their defaults.
 std::vector<std::string> ChangedFlags();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/flags/command_line.h"
+#include "datasets/files/json_file.h"
 
 DEFINE_bool(overwrite, false, "replace existing recordings, manifests, pushes and figures");
 

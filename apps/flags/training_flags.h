@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "apps/flags/command_line.h"
+#include "datasets/files/json_file.h"
 #include "ident/training/restoration_training.h"
 #include "ident/validation/scores_report.h"
 

@@ -224,9 +224,9 @@ std::string PersonText(const FitResult& fit, const IdentifiedModel& model,
       const FormationRun run = RunFormation(model, scene, 480);  // 8 s
       text += height > 1.0 ? " and at the trunk " : " at the hip it ends ";
       text += run.summaries.empty() ? "on the ground"
-                                    : Rounded(run.summaries[0].displacement, 2) + " m";
+                                    : Rounded(run.summaries[0].displacement, 2) + " m away";
     }
-    text += " away (ten measured people: " + Rounded(measured, 2) + " m)";
+    text += " (ten measured people: " + Rounded(measured, 2) + " m)";
   }
   return text;
 }

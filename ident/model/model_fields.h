@@ -354,7 +354,7 @@ inline nlohmann::ordered_json ValuesJson(const ParameterTable& table,
   return values;
 }
 
-// The file from top to bottom. Entries that are only written are read by ModelReader first: the
+// The file from top to bottom. Entries that are only written are read by ReadModel first: the
 // others are of a model whose options and parameters are known.
 inline void ModelFields(JsonArchive& a, FittedModel& model, const RunInfo& run) {
   FitResult& fit = model.fit;

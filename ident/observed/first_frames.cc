@@ -104,7 +104,7 @@ std::vector<ForecastTrial> TrialsOf(const IdentifiedModel& model,
     for (int t = 0; t + kFramesAfter < frames && moment < std::size(kMoments); ++t) {
       if (t > 0) first.Observe(FrameAt(recording, t));
       if (first.seconds() < kMoments[moment] - 1e-9) continue;
-      TwoForecasts two = first.Forecasts(frames - 1 - t);
+      TwoForecasts two = first.Forecasts(frames - 1 - t, i == 0);
       if (i == 0) {
         ForecastTrial& trial = trials.emplace_back();
         trial.seconds = first.seconds();
@@ -309,11 +309,11 @@ HipPath FirstFrames::Physics(int person, const RolloutPath<double>& rollout) con
   return path;
 }
 
-TwoForecasts FirstFrames::Forecasts(int ahead) const {
+TwoForecasts FirstFrames::Forecasts(int ahead, bool physics) const {
   TwoForecasts two;
   RolloutPath<double> rollout;
-  const bool stays = plain_.Forecast(ahead, &rollout).ok;
-  for (int n = 0; stays && n < recording_->num_people(); ++n) {
+  if (physics) two.physics_status = plain_.Forecast(ahead, &rollout);
+  for (int n = 0; physics && two.physics_status.ok && n < recording_->num_people(); ++n) {
     two.physics.push_back(Physics(n, rollout));
   }
   if (!input_) return two;

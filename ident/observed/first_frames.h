@@ -88,8 +88,8 @@ SeenFrame FrameAt(const PendulumRecording& recording, int frame);
 // Hips to come, by [person][frame ahead].
 struct TwoForecasts {
   HipPaths physics, input;  // empty of one that has nothing to say
-  // The filter's rollout from the last frame seen on.
-  RolloutStatus input_status;
+  // The rollouts from the last frame seen on.
+  RolloutStatus physics_status, input_status;
   RolloutPath<double> input_path;
 };
 
@@ -101,7 +101,7 @@ class FirstFrames {
 
   // Pushes a person until the next frame, beside the recording's pushes: N, N m.
   void Push(int person, const Vector4<double>& force);
-  // The next frame; the first is frame 1. It costs the same however many were seen.
+  // The next frame; the first is frame 1. It takes as long however many were seen.
   void Observe(SeenFrame frame);
   int observed() const { return static_cast<int>(seen_.size()) + 1; }  // with frame 0
   double seconds() const;                                              // after frame 0
@@ -111,7 +111,7 @@ class FirstFrames {
   std::vector<Vector3<double>> LastHips() const;
 
   // The next `ahead` frames.
-  TwoForecasts Forecasts(int ahead) const;
+  TwoForecasts Forecasts(int ahead, bool physics = true) const;
 
  private:
   int LastSeen(int person, int until) const;

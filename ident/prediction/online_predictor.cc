@@ -103,7 +103,8 @@ Prediction OnlinePredictor::Predict() const {
   const TwoForecasts two = frames_->Forecasts(num_frames_ - observed());
   const std::optional<double> share = Share(two);
   if (!share) {
-    prediction.status = two.input_status;  // asked alone, and left the domain
+    const bool input = use_ == ForecastUse::kInput || two.physics_status.ok;
+    prediction.status = input ? two.input_status : two.physics_status;
     prediction.hip.clear();
     return prediction;
   }

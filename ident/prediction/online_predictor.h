@@ -29,7 +29,7 @@ MaybeError CheckLearnsFromFrames(const IdentifiedModel& model);
 
 class OnlinePredictor {
  public:
-  static constexpr int kEndless = -1;  // frames for Next, which Predict has none of
+  static constexpr int kEndless = -1;  // a number of frames, for Next alone: Predict has none then
 
   // recording: people, pushes and frame 0; its later frames are not looked at. Both must outlive
   // the predictor. Errors: those of CheckLearnsFromFrames; a filter that there is not.
@@ -37,8 +37,8 @@ class OnlinePredictor {
                                       const PendulumRecording& recording, int num_frames,
                                       ForecastUse use = ForecastUse::kBoth);
 
-  // Of the last frame, on a person until the next one, beside the recording's pushes: N, N m. Known
-  // to Next alone.
+  // Pushes a person from the last frame until the next one, beside the recording's pushes: N, N m.
+  // Hips to come know of it; lean, forces and steps of Predict do not.
   void Push(int person, const Vector4<double>& force) { frames_->Push(person, force); }
   // The next frame, frame 1 first; nothing once all frames were seen.
   void Observe(SeenFrame frame);

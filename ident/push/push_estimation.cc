@@ -380,7 +380,7 @@ Result<PushWindow> DetectPushWindow(const PendulumRecording& recording,
     return Error{"recording " + recording.id + ": the hip of person " +
                  std::to_string(options.person) + " never moves faster than " +
                  std::to_string(kOnsetSpeed) +
-                 " m/s for three frames, so no push is found; name the window or lower the speed"};
+                 " m/s for three frames, so no push is found; name the window"};
   }
   onset -= kSustained;
   PushWindow window;

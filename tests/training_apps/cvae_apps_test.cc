@@ -67,8 +67,7 @@ TEST_F(CvaeAppTest, TheCvaeIsCrossValidatedByMeanAndByDraws) {
 
 // Pendulums with rods that move, restored through the chain.
 TEST_F(CvaeAppTest, IsTrainedOnRodsThatMove) {
-  const std::string model =
-      "--model=" + FitModel("rod.json", {"--rod=ldp:2", "--max_iterations=2", "--fix=Kd_theta=70"});
+  const std::string model = "--model=" + FitModel("rod.json", {"--rod=ldp:2", "--fix=Kd_theta=70"});
   Succeeded(RunApp("pushid-simulate", {"--out=" + Path("short"), "--people=2", "--frames=16",
                                        "--recordings_per_person=2", "--quiet"}));
   const std::string few = "--recordings=" + Path("short/manifest.json");
