@@ -69,8 +69,9 @@ Result<pid_t> StartChild(const ChildSpec& spec) {
   for (std::string& word : words.value()) argv.push_back(word.data());
   argv.push_back(nullptr);
   const int flags = O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC;
-  const int out = open(spec.out.c_str(), flags, 0644), err = open(spec.err.c_str(), flags, 0644);
-  const bool opened = out >= 0 && err >= 0;
+  const int out = open(spec.out.c_str(), flags, 0644);
+  const int err = out < 0 ? -1 : open(spec.err.c_str(), flags, 0644);
+  const bool opened = err >= 0;
   const pid_t parent = getpid();
   const pid_t child = opened ? fork() : -1;
   if (child == 0) RunInChild(spec, argv.data(), parent, out, err);
@@ -95,7 +96,8 @@ Error RunInstead(const std::string& name, const std::vector<std::string>& argume
   for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
   execv(beside.c_str(), words.data());
-  if (errno == ENOENT) execvp(name.c_str(), words.data());
+  words[0] = const_cast<char*>(name.c_str());
+  if (errno == ENOENT || errno == EACCES) execvp(name.c_str(), words.data());
   if (errno == ENOENT) {
     return Error{name + " is neither beside this program nor on the PATH; install or build it"};
   }

@@ -40,6 +40,7 @@ std::string StrCat(const Parts&... parts) {
   std::string text;
   const auto append = [&text](const auto& part) {
     using Part = std::decay_t<decltype(part)>;
+    static_assert(!std::is_floating_point_v<Part> && !std::is_enum_v<Part>);
     if constexpr (std::is_integral_v<Part> && !std::is_same_v<Part, char>) {
       text += std::to_string(part);
     } else {

@@ -537,7 +537,9 @@ Result<BvhPositions> ReadBvhPositions(const std::string& path, const BvhPosition
     std::iota(result.joints.begin(), result.joints.end(), 0);
     if (options.choose_joints) result.joints = options.choose_joints(header.skeleton);
     result.positions.resize(result.joints.size());
-    for (auto& track : result.positions) track.reserve(FramesToReserve(reader, header));
+    const std::size_t frames = FramesToReserve(reader, header);
+    for (auto& track : result.positions) track.reserve(frames);
+    if (options.keep_values) result.values.reserve(frames * header.skeleton.num_channels());
     BvhKinematics kinematics(header.skeleton, options.metres_per_unit, result.joints);
     std::vector<Eigen::Vector3d> positions(result.joints.size());
     const auto take_row = [&](const std::vector<double>& values) {

@@ -94,7 +94,7 @@ class ParameterReader {
     for (int i = 0; i < num_dimensions; ++i) {
       parameter.dimensions.push_back(bytes_.Byte(at + i));
       count *= bytes_.Byte(at + i);
-      Need(0, count);
+      if (!bytes_.Has(0, count)) Need(at, count);
     }
     at += num_dimensions;
     Need(at, count * std::abs(type));
