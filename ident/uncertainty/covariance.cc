@@ -353,7 +353,7 @@ Scatter ClusteredScatter(const ResidualRows& score, const Clustering& clustering
     const Eigen::MatrixXd moves = SolveSymmetric(hessian, GatherScores(score, both, back).scores);
     // The difference need not be positive: negative eigenvalues become zero.
     const auto [values, v] = DecomposeSymmetric(inner + two.covariance - moves * moves.transpose());
-    inner = v * values.cwiseMax(0.0).asDiagonal() * v.transpose();
+    inner.noalias() = v * values.cwiseMax(0.0).asDiagonal() * v.transpose();
     // As the fewer of the two have.
     freedom = freedom.cwiseMin(std::max(1.0, clustering.line_ups.count - 1.0)).eval();
   }
