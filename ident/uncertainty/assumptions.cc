@@ -124,20 +124,18 @@ void Double(const Between& between, std::vector<T>* at) {
 }
 
 // Twice as many steps in the same time. Rows of external pushes and of the ground's acceleration
-// are means about their frames (ResamplePush) and go between them by straight lines; those of net
-// pushes, during which no other force acts, are held for a whole step. Every half of a step is
-// compared with the frame at its end.
+// are means about their frames (ResamplePush) and go between them by straight lines; every half of
+// a step is compared with the frame at its end.
 void HalveSteps(double, PendulumRecording* r) {
   r->scene.dt *= 0.5;
   for (ScenePush& push : r->scene.pushes) {
     std::vector<Vector4<double>> rows;
-    const double held = push.kind == PushKind::kExternal ? 0.5 : 1.0;
     for (const Vector4<double>& row : push.force) {
-      if (!rows.empty()) rows.back() += (1.0 - held) * row;
+      if (!rows.empty()) rows.back() += 0.5 * row;
       rows.push_back(row);
-      rows.push_back(held * row);
+      rows.push_back(0.5 * row);
     }
-    if (!rows.empty()) rows[0] *= 2.0 - held;  // with the half before it: the impulse stays
+    if (!rows.empty()) rows[0] *= 1.5;  // with the half before it: the impulse stays
     push = MakeScenePush(push.person, 2 * push.start_frame, push.kind, std::move(rows));
   }
   GroundMotion& ground = r->scene.ground;
@@ -248,7 +246,10 @@ std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint&
   all.push_back({"masses", "", stated.mass, 1e-4, ScaleMasses});
   all.push_back({"frame rate", "", stated.frame_rate, 1e-4, ScaleFrameRate, nullptr, {}, true});
   all.push_back({"drift of the cameras", "m", stated.drift_m, 1e-4, DriftAlong});
-  all.push_back({kStepName, "", 1.0, -0.5, HalveSteps, nullptr, {}, false, true});
+  // Net pushes were computed from the recording's own steps, and reproduce the motion with these.
+  if (only_measured) {
+    all.push_back({kStepName, "", 1.0, -0.5, HalveSteps, nullptr, {}, false, true});
+  }
   const FitOptions& options = problem.options();
   const ModelOptions& model = options.model;
   if (model.stance == Stance::kSlide && model.body != BodyModel::kTable) {
