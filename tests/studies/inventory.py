@@ -15,11 +15,11 @@ import sys
 import studies
 
 ENDINGS = (".h", ".cc", ".py", ".sh", ".json", ".cmake", ".toml", "CMakeLists.txt")
-MOST_LINES, MOST_FILES, MOST_FLAGS, MOST_FIT_FLAGS, SLACK = 75044, 364, 160, 45, 1.05
+MOST_LINES, MOST_FILES, MOST_FLAGS, MOST_FIT_FLAGS, SLACK = 75045, 364, 160, 45, 1.05
 # Feature, goal, bound, and the files of it: the first row that matches a file has it.
 FEATURES = [
     ("contrasts", 560, 602, r"ident/(fit/(covariates|contrast)|uncertainty/contrast|report/contrast)"),
-    ("verdict", 1000, 871, r"ident/uncertainty/(model_verdict|assumptions)"),
+    ("verdict", 1000, 872, r"ident/uncertainty/(model_verdict|assumptions)"),
     ("steps and stance", 1749, 1561, r"models/(stance|standing|support)|datasets/loading/foot_steps|ident/(fit/step_probability|prediction/predicted_steps|report/page/standing)"),
     ("laboratory", 1648, 1588, r"models/(ground|reaction_delay|turn)|datasets/(loading/(laboratory|ground_markers)|manifest/laboratory_keys)|residuals/plate_residual|ident/(parameters/laboratory|fit/laboratory|prediction/laboratory)"),
     ("interaction", 450, 474, r"models/(contact|pair|interaction|ldp_interaction|neighbours)"),
