@@ -16,8 +16,7 @@ DEFINE_string(scheme, pushid::NameOf(pushid::FoldScheme::kStratified),
               "--crossvalidate: stratified (folds by setting, strength and subject) or interleaved "
               "(recordings of a setting assigned to folds in turn)");
 DEFINE_string(json_out, "", "--crossvalidate: write the scores here (JSON)");
-DEFINE_uint64(seed, pushid::TrainerOptions{}.seed,
-              "seed of weights, batches, noise and folds; with --seeds the first");
+DEFINE_uint64(seed, pushid::TrainerOptions{}.seed, "seed of weights, batches, noise and folds");
 DEFINE_int32(num_threads, pushid::TrainerOptions{}.num_threads,
              "threads of the training; only a single thread is bit-reproducible");
 
