@@ -15,7 +15,7 @@ import sys
 import studies
 
 ENDINGS = (".h", ".cc", ".py", ".sh", ".json", ".cmake", ".toml", "CMakeLists.txt")
-MOST_LINES, MOST_FILES, MOST_FLAGS, MOST_FIT_FLAGS, SLACK = 75045, 364, 160, 45, 1.05
+MOST_LINES, MOST_FILES, MOST_FLAGS, MOST_FIT_FLAGS, SLACK = 75044, 364, 160, 45, 1.05
 # Feature, goal, bound, and the files of it: the first row that matches a file has it.
 FEATURES = [
     ("contrasts", 560, 602, r"ident/(fit/(covariates|contrast)|uncertainty/contrast|report/contrast)"),
@@ -29,7 +29,7 @@ FEATURES = [
     ("noise, likelihoods, paths", 1600, 1368, r"models/(process_noise|input_|pendulum_filter)|residuals/cost_functions/likelihood|ident/(solver/likelihood|forecasts/(most_probable|path))|apps/pushid_path"),
     ("diffusion", 1500, 1518, r"models/generators/diffusion|apps/flags/.*diffusion"),
     ("particles", 2400, 2112, r"models/(particles|generators/particle)|ident/forecasts/forecast_"),
-    ("generators' files, training, programs", 1600, 1988, r"models/generators|ident/(generators|training/generator)|apps/(generate|pushid_generate|pushid_train_generator|flags/(generate|train_generator|training|published))"),
+    ("generators' files, training, programs", 1600, 1987, r"models/generators|ident/(generators|training/generator)|apps/(generate|pushid_generate|pushid_train_generator|flags/(generate|train_generator|training|published))"),
     ("group metrics", 1400, 1314, r"ident/(validation/(group_|hip_group)|forecasts/social|diagnostics/social)|models/restoration/(group_motion|state_classifier|social)"),
     ("restoration", 3500, 4104, r"models/restoration|ident/(training|bodies/restoration_files)|apps/(pushid_train_restoration|flags/(.*restoration|postprocess|body))"),
     ("bodies, animation", 2000, 1969, r"ident/bodies|apps/pushid_animate|ident/figures/moving"),
