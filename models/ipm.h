@@ -253,7 +253,7 @@ class FrameTable {
   FrameTable() = default;
   FrameTable(int num_frames, int num_people)
       : num_people_(num_people), values_(static_cast<size_t>(num_frames) * num_people) {}
-  // As new, in the room that is there.
+  // Sets everything as new, in the memory that is there.
   void Reset(int num_frames, int num_people) {
     num_people_ = num_people;
     values_.assign(static_cast<size_t>(num_frames) * num_people, Value());

@@ -71,7 +71,7 @@ std::vector<ForcePart> ActingParts(const FormationRun& run);
 FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int num_frames,
                           const std::vector<std::string>& names = {});
 
-// Whose answer predictions of external pushes are, where the model was fitted to net ones alone;
+// The person whose answer predictions of external pushes are, of a model fitted to net ones alone;
 // else empty. One sentence: people, recordings and stance of the fit, and where its person, alone,
 // ends after two pushes that were measured on ten others (models/README.md). model: of that fit.
 std::string PersonText(const FitResult& fit, const IdentifiedModel& model,

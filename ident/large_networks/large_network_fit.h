@@ -41,7 +41,7 @@ struct SharedPrior {
   double sigma = std::numeric_limits<double>::infinity();
   double unit = 1.0;  // a typical change: what Adam takes for one
 };
-// As the table says, one for each of the map's fitted parameters.
+// Values of the table, one for each of the map's fitted parameters.
 std::vector<SharedPrior> SharedPriors(const ParameterTable& table, const ParameterMap& map);
 
 struct LargeNetworkFit {

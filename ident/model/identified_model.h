@@ -103,7 +103,7 @@ struct ForecastRule {
 
 // Facts that a fit shares with the model that it gives.
 struct ModelFacts {
-  // As they act, fixed ones too. Indexed by Parameter.
+  // Values as they act, fixed ones too. Indexed by Parameter.
   ParameterSet<double> parameters{};
   std::optional<PushRange> push_range;  // that it was fitted to; none in files older than it
   // None where nobody stepped or everybody did, and in older files.

@@ -140,8 +140,8 @@ Result<RodShape> ParseRod(const std::string& flag, const std::string& text) {
   RodShape shape{FromName<RodKind>(text.substr(0, colon)).value_or(RodKind::kConstant)};
   shape.hidden = HiddenSizes(colon == std::string::npos ? kLdpRod : text.substr(colon + 1));
   if (shape.moves() && !shape.hidden.empty()) return shape;
-  return Error{flag + " is '" + text +
-               "'; it must be constant or, as LDP's, ldp:128-128" + LayersHelp()};
+  return Error{flag + " is '" + text + "'; it must be constant or, as LDP's, ldp:128-128" +
+               LayersHelp()};
 }
 
 Result<InteractionChoice> ParseInteraction(const std::string& flag, const std::string& text) {

@@ -153,7 +153,7 @@ inline bool NeedsGradientTraining(const FitOptions& options) {
   return !options.hold_network && IsLarge(options);
 }
 
-// As JSON: the options, and the parameter table.
+// The options and the parameter table as JSON.
 nlohmann::ordered_json OptionsJson(const FitOptions& options);
 nlohmann::ordered_json TableJson(const ParameterTable& table);
 // The options and the table: everything that decides what a fit of given recordings finds. A user's

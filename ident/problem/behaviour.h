@@ -92,7 +92,7 @@ std::string VerdictName(Verdict verdict);
 // "the fitted forces drive the person after a push": no capital, no full stop.
 std::string VerdictSentence(Verdict verdict, const Behaviour& behaviour, const ModelOptions& model);
 
-// As it begins a sentence.
+// The text with a capital, as it begins a sentence.
 std::string Capitalized(std::string text);
 
 // The flag that mends it, for a fit with these options; empty where the person settles.

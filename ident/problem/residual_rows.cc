@@ -398,7 +398,7 @@ class RowsOfRecordings {
     for (Index k = 0; assumption.of_rates && k < motion; ++k) {
       if (IsRate(k)) column[k] -= rows.residuals[k];
     }
-    // As if the estimates had stayed where they are.
+    // The estimates are taken to have stayed where they are.
     for (const auto& [of, shift] : assumption.along) {
       const auto found =
           std::find(rows.columns.begin(), rows.columns.end(), static_cast<Index>(of));

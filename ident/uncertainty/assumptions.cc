@@ -99,7 +99,7 @@ void ScaleFrameRate(double eta, PendulumRecording* r) {
   if (ground.moves()) ground = GroundThrough(ground.poses, r->scene.dt);
 }
 
-// What cameras see moves along the push, by eta metres over a recording.
+// Positions drift along the push, by eta metres over a recording.
 void DriftAlong(double eta, PendulumRecording* r) {
   const Eigen::Vector2d along = eta * PushDirection(*r);
   const double last = std::max(1, r->num_frames() - 1);

@@ -9,7 +9,7 @@
 
 namespace pushid {
 
-// What is stated of measured pushes is the largest of the recordings'
+// The stated errors of measured pushes are the largest of the recordings'
 // (datasets/manifest/laboratory_keys.h). Pushes by inverse dynamics have neither a clock, a height
 // nor a zero of their own, and follow the masses. A held gain is stated to a factor of two, a term
 // left out not at all. People react late, whether their feet hold or not: a torque Kp e(t - tau) is

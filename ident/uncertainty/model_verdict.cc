@@ -191,12 +191,12 @@ class ModelJudge {
     if (static_cast<int>(std::min(inside.size(), outside.size())) < kFewestClusters) return;
     const Eigen::MatrixXd share = information * inverse_;
     const Eigen::MatrixXd parts = some - share * scores_.topRows(n);
-    // What priors and demands pull at the optimum is balanced by all rows, and by their share of
+    // The pull of priors and demands at the optimum is balanced by all rows, and by their share of
     // these.
     const Eigen::VectorXd sum = some.rowwise().sum() - share * scores_.topRows(n).rowwise().sum();
     for (Eigen::Index i = 0; i < shared; ++i) {
       const double error = ErrorOfSum(parts.row(i).transpose());
-      // What priors hold asks for its prior, in parts more than in all.
+      // An estimate that priors hold asks for its prior, in parts more than in all.
       if (error <= 0.0 || uncertainty_->estimates[i].shares.data < kLeastShare) continue;
       const double t = sum[i] / error;
       verdict_.parts.push_back({columns_[i].name, name, t, StudentTail(t, verdict_.freedom)});
@@ -231,7 +231,7 @@ class ModelJudge {
     for (const Scatter::Part& part : c.scatter.parts) {
       total.parts.push_back({part.covariance.topLeftCorner(n, n), part.freedom.head(n)});
     }
-    // What moves and pulls an estimate is known no better than how the recordings scatter.
+    // Moves and pulls of an estimate are known no better than how the recordings scatter.
     const Eigen::VectorXd freedom = total.parts[0].freedom;
     const Eigen::VectorXd moves =
         (c.inverse_hessian * (rows.jacobian.transpose() * rows.residuals)).head(n);

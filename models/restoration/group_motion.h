@@ -111,7 +111,7 @@ class MotionWords {
 //   cosine between where others face and the way to me: mean and least
 //   wrist speed of the others: mean and most; cosine between where I face and the ways to the
 //   others, weighted by it
-// Of others only means and extremes: their order does not matter. Who is alone has zeros there.
+// Others enter by means and extremes: their order does not matter. A person alone has zeros there.
 
 inline constexpr int kStateFeatures = 14;
 

@@ -51,7 +51,7 @@ const Code& OfWidth();
   const Code& OfWidth<Code, 512>()
 PUSHID_WIDTHS(VectorKernels);
 
-// As many of 128, 256 and 512 bits as this processor can run.
+// The widths among 128, 256 and 512 bits that this processor can run.
 int NumVectorWidths();
 
 // All widths that this processor can run, the widest last; never empty.
