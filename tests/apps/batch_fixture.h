@@ -36,7 +36,7 @@ class BatchFixture : public AppTest {
     return RunApp("pushid-batch", With({plan, "--quiet"}, more));
   }
 
-  // Of the jobs in what --list prints.
+  // Ids of the jobs in the output of --list.
   static std::set<std::string> Ids(const std::string& listing) {
     std::set<std::string> ids;
     for (const std::string& line : Lines(listing)) ids.insert(line.substr(0, line.find(',')));

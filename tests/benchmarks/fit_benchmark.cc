@@ -42,7 +42,7 @@ void SolveOnly(benchmark::State& state, const char* preset) {
 BENCHMARK_CAPTURE(SolveOnly, tail, "tail")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(SolveOnly, ldp, "ldp")->Unit(benchmark::kMillisecond);
 
-// The same recordings by the innovation likelihood, drift and noise together.
+// A fit of these recordings by the innovation likelihood, drift and noise together.
 void SolveByInnovations(benchmark::State& state) {
   FitOptions options = MakeFitOptions({{"preset", "tail"}, {"likelihood", "innovation"}}).value();
   options.num_threads = 1;

@@ -35,7 +35,7 @@ void IpmStep(benchmark::State& state) {
 }
 BENCHMARK(IpmStep)->Unit(benchmark::kNanosecond);
 
-// The same of feet that hold and step, in the middle of a step.
+// A step of the model with feet that hold and step, in the middle of a swing.
 void IpmStepOfStance(benchmark::State& state) {
   const PendulumRecording& recording = SinglePeople().recordings[0];
   ModelOptions options;

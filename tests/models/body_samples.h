@@ -101,7 +101,7 @@ inline WindowWeights RandomWindow(uint64_t seed = 1,
   return weights;
 }
 
-// Of a layout, or LDP's own.
+// Random weights for a layout, or for LDP's own.
 inline CvaeWeights RandomCvae(uint64_t seed = 1, const CvaeLayout& layout = {}) {
   Random random(seed);
   const auto sampler = [&random](int condition) {

@@ -136,7 +136,7 @@ TEST_P(LatePeople, RolloutsComeToTheContinuousOnes) {
   }
   EXPECT_GT(largest, 0.01);
   EXPECT_LT(errors.back(), 0.02 * largest);
-  // Of first order: half the step, half the error.
+  // Errors are of first order: half the step, half the error.
   for (size_t i = 1; i < errors.size(); ++i) {
     EXPECT_LT(errors[i], 0.65 * errors[i - 1]) << i << ": " << errors[i - 1] << " " << errors[i];
   }

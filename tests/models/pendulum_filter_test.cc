@@ -79,7 +79,7 @@ struct Experiment {
   std::vector<ParameterSet<double>> parameters = {p};
 };
 
-// Of one person the filter's densities multiply to that of all measurements at once, as far as the
+// The filter's densities of one person multiply to that of all measurements at once, as far as the
 // motion is linear.
 TEST(PendulumFilter, ItsDensitiesMultiplyToTheDenseGaussian) {
   Experiment e;

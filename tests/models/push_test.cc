@@ -68,7 +68,7 @@ TEST(PushTail, ItsBaseIsASpeed) {
   EXPECT_EQ(TailForce(none, 80.0, p, 3, frame).norm(), 0.0);
 }
 
-// The same impulse over ever more frames: the tail brings an ever smaller share of it, also with an
+// An impulse over ever more frames: the tail brings an ever smaller share of it, also with an
 // exponent that once made a push of two seconds go on for minutes.
 TEST(PushTail, StaysInProportionToTheWholePush) {
   constexpr double kImpulse = 40.0;  // N s

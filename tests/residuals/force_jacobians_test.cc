@@ -47,7 +47,7 @@ void ExpectCorrectSelfJacobian(const ModelOptions& options, double magnitude, Ra
   for (int i = 0; i < kNumParameters; ++i) p[i] = Jet(values[i], kParameters + i);
 
   SelfJacobian<double> jacobian;
-  // Of what is always written a NaN must not stay.
+  // Entries that are always written must keep no NaN.
   jacobian.by_parameter.middleCols<kKpX - kMu>(kMu).topRows<2>().setConstant(NAN);
   AddFrictionJacobian(self, values, at.qd, &jacobian);
   ExpectClose(Flat(jacobian), Derivatives(self.Friction(p, state.qd)), 1e-12);

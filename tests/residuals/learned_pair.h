@@ -49,7 +49,7 @@ inline void ExpectDerivativesEqualDifferences(const ModelOptions& options, Param
   ExpectDirectionalDerivatives(AutoDiffRollout(problem), blocks, {1e-6, regime.absolute, 0.0});
 }
 
-// The same residuals and derivatives by everything else, whether or not the weights are fitted.
+// Residuals and derivatives by everything else are the same, whether or not weights are fitted.
 inline void ExpectFixedWeightsAreTheModels(const ModelOptions& options, Random* random) {
   const PendulumRecording recording = LearnedPair(options, 0.1, 150.0, 0.0, random);
   ParameterMap fixed = EveryParameterMap({}), fitted = fixed;

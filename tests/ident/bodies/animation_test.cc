@@ -91,7 +91,7 @@ Animation Moving(const std::vector<double>& x) {
   return animation;
 }
 
-// Who stands for four frames and then goes 1 m in the last is seen going, not waiting.
+// A person who stands for four frames and then goes 1 m is shown going, not waiting.
 TEST(AnimationTest, PosesAreSpacedByMotion) {
   const std::string svg = PoseStrip(Moving({0, 0, 0, 0, 0, 0.2, 0.4, 0.6, 0.8, 1.0}), 3).ToString();
   for (const char* time : {">0 s<", ">0.117 s<", ">0.15 s<"}) EXPECT_TRUE(Contains(svg, time));

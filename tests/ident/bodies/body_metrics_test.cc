@@ -205,7 +205,7 @@ TEST(BodyReportTest, GroupsHaveMetricsOfTheirOwn) {
   EXPECT_EQ(recorded["recordings"], 1);
   EXPECT_EQ(recorded["pushed_named"], 1);
   EXPECT_EQ(recorded["sscp"], 0.0);
-  // Of 22 words of 19 steps, 45 steps of one person and all 209 of the other rest, and count half.
+  // Steps at rest count half: 45 of one person and all 209 of the other, of 22 words of 19 steps.
   EXPECT_NEAR(recorded["ndms"].get<double>(), 1.0 - 0.5 * 254.0 / 418.0, 1e-9);
   EXPECT_EQ(json["baselines"]["static"]["group_metrics"]["missed_movers"], 1);
   EXPECT_TRUE(Contains(BodyText(evaluation), "pushed named"));

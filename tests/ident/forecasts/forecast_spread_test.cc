@@ -50,7 +50,7 @@ TEST_F(SpreadTest, TooNarrowFuturesScoreWorseAndCoverLess) {
   EXPECT_GT(narrow.energy[2], right.energy[2]);
 }
 
-// Of three futures the likeliest is 3 cm off along every joint's x; nearer ones do not count.
+// The likeliest of three futures is 3 cm off along every joint's x; nearer ones do not count.
 TEST(MostProbableTest, ByHand) {
   const std::vector<ForecastWindow> windows = {
       {"walk", Trajectories::Zero(12, 25), Trajectories::Zero(12, kForecastFrames)}};

@@ -43,11 +43,11 @@ TEST_F(SocialReportTest, StatesFollowTheKnownChain) {
   shares /= shares.sum();
   const Eigen::Matrix3d known = TurnTransitions();
   EXPECT_NEAR(known.sum(), 1.0, 1e-12);
-  // Of a stationary chain as many steps lead into a state as out of it.
+  // A stationary chain has as many steps into a state as out of it.
   EXPECT_NEAR((known.rowwise().sum() - known.colwise().sum().transpose()).norm(), 0.0, 1e-12);
   for (int a = 0; a < 3; ++a) {
     for (int b = 0; b < 3; ++b) {
-      // Of some 400 turns 160 end in a pause: a standard deviation of 8 %.
+      // About 160 of 400 turns end in a pause: a standard deviation of 8 %.
       EXPECT_NEAR(shares(a, b), known(a, b), 0.25 * known(a, b)) << a << " to " << b;
     }
   }
@@ -98,7 +98,7 @@ TEST_F(SocialReportTest, BuiltInStatesFromAFileAreTheBuiltInOnes) {
   json.erase("states"), again.erase("states");
   EXPECT_EQ(json.dump(), again.dump());
   EXPECT_EQ(json["by"]["recorded"]["sscp"], 0.0);
-  // Those of a single person, and the sum over frames, are what they were before.
+  // Metrics of a single person, and the sum over frames, do not change.
   const BodyEvaluation plain = Slowed(recordings);
   EXPECT_EQ(plain.at("generator").groups->social.sscp,
             built_in.at("generator").groups->social.sscp);

@@ -60,7 +60,7 @@ TEST(FormationRun, ALineStartsToMoveOneAfterAnother) {
   }
   // No person moves before the push could have arrived.
   EXPECT_EQ(HipSpeed(run, 5, run.summaries[0].onset_frame), 0.0);
-  // Who is pushed goes forwards; who bumps into the next one goes back.
+  // The person who is pushed goes forwards, and back after bumping into the next one.
   EXPECT_GT(HipSpeed(run, 0, run.summaries[0].onset_frame), 0.0);
 }
 

@@ -1,4 +1,4 @@
-// Who speaks after first frames, distributions, and what they learn from.
+// Forecasters after the first frames, their distributions, and what these learn from.
 #include "ident/observed/first_frames.h"
 
 #include <gtest/gtest.h>
@@ -111,7 +111,7 @@ TEST(LearnForecasts, ScalesHoldTheirShares) {
   }
 }
 
-// Of a normal distribution in closed form (Gneiting and Raftery 2007, (21)).
+// CRPS of a normal distribution in closed form (Gneiting and Raftery 2007, (21)).
 TEST(HipDistribution, CrpsIsThatOfTheNormalDistribution) {
   std::array<ErrorScale, 3> errors;
   for (ErrorScale& scale : errors) scale.coefficients = {std::log(0.2), 0.0, 0.0, 0.0};

@@ -50,7 +50,7 @@ TEST(Spectra, ResponseOfALateSeries) {
   }
 }
 
-// Of two independent series one bin in 20 seems coherent, and none of them by a single segment.
+// Two independent series seem coherent in one bin of 20, and in none by a single segment.
 TEST(Spectra, ChanceIsNoCoherence) {
   Random random(3);
   std::vector<double> u, y;

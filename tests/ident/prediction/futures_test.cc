@@ -20,7 +20,7 @@ TEST(Crps, OfAUniformDistributionIsItsClosedForm) {
   Random random(3);
   std::vector<double> draws;
   for (int i = 0; i < 20000; ++i) draws.push_back(random.Unit());
-  // Of U(0, 1): the integral of (F - 1{x >= y})^2.
+  // CRPS of U(0, 1): the integral of (F - 1{x >= y})^2.
   for (double y : {-0.5, 0.3, 0.5, 1.2}) {
     const double inside = (y * y * y + (1.0 - y) * (1.0 - y) * (1.0 - y)) / 3.0;
     const double expected = y < 0.0 ? 1.0 / 3.0 - y : y > 1.0 ? y - 1.0 + 1.0 / 3.0 : inside;

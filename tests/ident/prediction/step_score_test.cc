@@ -22,7 +22,7 @@ TEST(StepScore, BrierAndAucByHand) {
   EXPECT_EQ(score.stepped, 2);
   EXPECT_EQ(score.people, 2);
   EXPECT_NEAR(score.brier, (0.01 + 0.36 + 0.16 + 0.01) / 4, 1e-12);
-  // Of four pairs three are won and one is a tie.
+  // Three of four pairs are won and one is a tie.
   EXPECT_NEAR(score.auc, 3.5 / 4, 1e-12);
 }
 

@@ -311,11 +311,11 @@ TEST(CrossValidation, ErrorsAreClusteredByPushedPerson) {
   EXPECT_TRUE(Contains(text, "model is not distinguishable from zero"));
   EXPECT_TRUE(Contains(text, "95 % interval +- 13 m: 2 people,"));
   EXPECT_TRUE(Contains(text, "+-: standard errors over 2 people"));
-  // Of one person there are recordings only: 2 3 6 by hand.
+  // A single person's errors are clustered by recording: 2 3 6 by hand.
   const MeanScore& one = model.summary.by.at("subject").at("S1");
   EXPECT_EQ(one.clustered_by, ClusterBy::kRecording);
   EXPECT_NEAR(one.error[kHipAde], std::sqrt(13.0 / 9.0), 1e-14);
-  // Who was weighed anew is the same person.
+  // A person who was weighed anew is the same person.
   recordings[3].scene.people[0].body.mass += 10.0;
   EXPECT_EQ(Summarize(recordings, scores).mean.clusters, 2);
 }

@@ -77,7 +77,7 @@ TEST(GroupMetricsTest, ShownFramesDoNotCount) {
   // Recorded: steps alone; forecast: standing alone. Disjoint statistics are sqrt(ln 2) apart.
   EXPECT_NEAR(*CompareStates({recorded}, {still}).sscp, std::sqrt(std::log(2.0)), 1e-9);
   EXPECT_LT(flattered, 0.8);
-  // Of 31 frames from the last shown one on there are 12 words. None of them stands, so that
+  // 31 frames from the last shown one on make 12 words. None of them stands, so that
   // standing finds nothing like itself; among all frames it finds the shown ones, 1/2 a joint.
   EXPECT_LT(*CompareWords({recorded}, {still}), 1e-4);
   recorded.first_frame = 1;
@@ -111,14 +111,14 @@ TEST(GroupMetricsTest, WhatIsNotDefinedHasNoNumber) {
   EXPECT_FALSE(CompareWords({Walkers(4, 10)}, {Walkers(4, 10, 19)}).has_value());
 }
 
-// The same motion in twice as many frames a second is the same motion.
+// A motion in twice as many frames a second is the same motion.
 TEST(GroupMetricsTest, TheRateOfTheRecordingDoesNotCount) {
   GroupMotion fast = Walkers(4, 10);
   for (BodyMotion& person : fast.people) person = AtSpeed(person, 0.5, 59);
   fast.dt *= 0.5;
   const SocialMetrics metrics = CompareStates({Walkers(4, 10)}, {fast});
   EXPECT_NEAR(*metrics.sscp, 0.0, 1e-7);
-  // Of 22 words of 19 steps, 10 + 55 steps rest, and count half.
+  // Steps at rest count half: 10 + 55 of 22 words of 19 steps.
   EXPECT_NEAR(*CompareWords({Walkers(4, 10)}, {fast}), 1.0 - 0.5 * 65.0 / 418.0, 1e-9);
 }
 
@@ -140,7 +140,7 @@ class RealGroupsTest : public ::testing::Test {
     ASSERT_EQ(first_.size(), 14u);
     ASSERT_EQ(others_.size(), 35u);
   }
-  // Of the first fold, each motion changed.
+  // The first fold with each motion changed.
   template <typename Change>
   std::vector<GroupMotion> Changed(Change change) const {
     std::vector<GroupMotion> changed = first_;

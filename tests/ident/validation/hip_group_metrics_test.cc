@@ -61,14 +61,14 @@ TEST(HipGroupMetricsTest, OnsetsNeedNoBodies) {
   EXPECT_FALSE(metrics->social.sscp || metrics->social.sscp_changes || metrics->social.ndms);
 }
 
-// Of people who are as stiff as what is put in their place, everything is told but who it was.
+// Where rigid people are compared with rigid bodies, all metrics are exact but who it was.
 TEST(HipGroupMetricsTest, RigidBodiesAreJudgedWhereBodiesAreKnown) {
   const std::vector<BodyMotion> people = Stiff(4, 10), others = Stiff(20, 22);
   const std::vector<PendulumRecording> recordings = {RecordingOf(people), RecordingOf(others)};
   const RecordedBodies bodies = {people, others};
   const auto same = CompareHips(recordings, bodies, {{0, HipsOf(people)}, {1, HipsOf(others)}});
   EXPECT_NEAR(*same->social.sscp, 0.0, 1e-12);
-  // Of 164 words of 19 steps, 10 + 55 + 209 + 247 steps rest, and count half.
+  // Steps at rest count half: 10 + 55 + 209 + 247 of 164 words of 19 steps.
   const double alike = 1.0 - 0.5 * 521.0 / 3116.0;
   EXPECT_NEAR(*same->social.ndms, alike, 1e-9);
   // Predicted twice, it is the same motion, and twice as many onsets.

@@ -38,7 +38,7 @@ Restorations KindsWithoutDraws() {
   return kinds;
 }
 
-// Of LDP's chain, by the sampler and without a pendulum.
+// LDP's chains whose latent variables are drawn, by the sampler and without a pendulum.
 Restorations KindsThatDraw(const std::function<NormalSource()>& draws) {
   Restorations kinds;
   auto drawn = std::make_unique<CvaeRestoration>(RandomCvae());

@@ -145,7 +145,7 @@ void ExpectFiniteDifferences(AdjointGradient* adjoint, const Gradient& gradient,
   }
 }
 
-// Of a network too large for jets to be quick, each person with parameters of its own.
+// Networks too large for jets to be quick, and each person with parameters of its own.
 TEST(AdjointOfPeople, GradientEqualsFiniteDifferences) {
   for (const GroupRegime& regime : {kQuiet, kPushed, kFalling}) {
     SCOPED_TRACE(regime.name);

@@ -163,7 +163,7 @@ TEST(PlateResidual, ShearCarriesTheBodyAlong) {
   EXPECT_NEAR(r[2], -kMassAboveAnkles * kComOverHip * 0.9 * 0.5 / kGravity, 1e-12);
 }
 
-// The same mass, first moment and inertia about the ankles as the body's.
+// Mass, first moment and inertia about the ankles are the body's.
 TEST(MassDistribution, MovesLikeTheBody) {
   const MassDistribution masses{0.2, 0.6, 0.3};
   const Body body{50.0, 1.1, 0.0};

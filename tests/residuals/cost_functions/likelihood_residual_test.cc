@@ -57,7 +57,7 @@ std::ostream& operator<<(std::ostream& out, const LikelihoodRegime& regime) {
 
 class LikelihoodTwins : public testing::TestWithParam<LikelihoodRegime> {};
 
-// Those of transitions are exact, those of filters differences.
+// Jacobians of transitions are exact, those of filters differences.
 TEST_P(LikelihoodTwins, JacobiansEqualNumericDifferentiation) {
   const LikelihoodRegime& regime = GetParam();
   Random random(7);

@@ -71,7 +71,7 @@ TEST(SceneRollouts, AreThoseOfEachScene) {
   ExpectThoseOfRollouts(Pushed(2), options);  // without lanes
 }
 
-// Who falls keeps the last state within the domain, and the others their path.
+// A person who falls keeps the last state within the domain, and the others their path.
 TEST(SceneRollouts, WhoLeavesTheDomainStaysThere) {
   ParameterSet<double> p = RecoveringParameters();
   p[kKpTheta] = 0.0;

@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
                     RolloutRegime{"large", 0.1, 150.0, 0.3, 0.05, 0.4, 0.1, 1e-13}),
     [](const auto& test) { return test.param.name; });
 
-// The same subject twice: one block of deviations moves both people.
+// One block of deviations moves both people of one subject.
 TEST(PoolingUnits, AreSubjectsSettingsOrConditions) {
   PendulumRecording recording;
   recording.labels.Set(kSettingLabel, "row_1");

@@ -131,8 +131,8 @@ TEST(SteppingRollout, AreThoseOfFiniteChanges) {
   }
 }
 
-// Who holds, leans at the start and has gains that differ by direction; and a net push, whose rows
-// hold the feet's reaction.
+// A person whose feet hold, who leans at the start and whose gains differ by direction; and a net
+// push, whose rows hold the feet's reaction.
 TEST(SteppingRollout, DerivativesEqualDifferencesWhereFeetHold) {
   Random random(78);
   ModelOptions options = Steps();

@@ -52,7 +52,7 @@ TEST(VectorKernels, ProductsEqualEigens) {
   }
 }
 
-// Of rows of a wider matrix; left of the diagonal's blocks nothing may change.
+// Gram matrices of rows of a wider matrix; left of the diagonal's blocks nothing may change.
 TEST(Gram, EqualsEigens) {
   Random random(75);
   for (const VectorKernels* kernels : Supported<VectorKernels>()) {

@@ -60,7 +60,7 @@ TEST(GroupSectionTest, TellsWhatPredictedGroupsDo) {
   ASSERT_EQ(section.tables.size(), 2u) << "what they do, how the push travels";
   const auto& rows = section.tables[0].table.rows();
   ASSERT_EQ(rows.size(), 3u);
-  // Of 123 words of 19 steps, 10 + 78 + 209 steps rest and count half: an NDMS of 0.936.
+  // Steps at rest count half: 10 + 78 + 209 of 123 words of 19 steps; an NDMS of 0.936.
   // SSCP, changes, NDMS, pushed named, order, error, false and missed movers.
   const std::vector<std::string> exact = {"predicted", "0.000", "0.000", "0.936", "1 of 1",
                                           "1.000",     "0.000", "0",     "0"};
