@@ -29,11 +29,13 @@ if [ -z "${PUSHID_BIN:-}" ]; then
   skip_unusable_ccache
   echo "all packages are installed"
 
-  say "Building the programs into $bin (some minutes the first time)"
+  say "Building the programs that are called here into $bin (some minutes the first time)"
   generator=()
   if [ ! -f build/release/CMakeCache.txt ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
   cmake --preset release "${generator[@]}" >/dev/null
-  cmake --build --preset quickstart --parallel "$(nproc)"
+  targets=(pushid_quickstart)
+  if [ $example = laboratory ]; then targets+=(pushid-push); fi
+  cmake --build build/release --parallel "$(nproc)" --target "${targets[@]}"
 fi
 if [ $example = laboratory ]; then
   # shellcheck source=apps/laboratory.sh
@@ -92,7 +94,7 @@ echo "  studies.txt      how many intervals covered in 20 other studies"
 echo "  scores.json      prediction errors on the held-out pushes"
 echo "  trajectory.csv   a predicted push: states, hip and forces over time"
 echo "  motion.html      animation of the recorded and the predicted person; poses.svg is a strip of their poses"
-printf '\nYour own recordings (README.md, Your own recordings):\n'
+printf '\nYour own recordings (README.md, Your own recordings; cmake --build --preset programs builds the other programs):\n'
 echo "  $(realpath "$bin")/pushid-fit --recordings=YOUR/manifest.json --setting=single --model_out=model.json"
 
 say "Result"

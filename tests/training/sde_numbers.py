@@ -1,4 +1,4 @@
-"""Numbers of SDE's Eq. 6 and Eq. 12 for particle_losses_torch_test.cc, by another way than the code: loops over scalars, and
+"""Numbers of SDE's Eq. 6 and Eq. 12 for losses_torch_test.cc, by another way than the code: loops over scalars, and
 derivatives by central differences in 60 digits (Eq. 6), in double precision where a critic is evaluated (Eq. 12)."""
 from decimal import Decimal, getcontext
 from math import cos, exp, sin, sqrt
