@@ -5,7 +5,6 @@
 #include "apps/flags/restoration_flags.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_evaluation.h"
-#include "ident/formations/formation_files.h"
 #include "ident/prediction/prediction.h"
 
 DEFINE_string(id, "", "the recording to show");
@@ -84,7 +83,6 @@ int Run() {
       bodies = RestoreBodies(*restoration, flags.postprocess,
                              PredictedPeople(recording.value(), prediction));
     }
-    if (animation.figures.empty()) animation.figures = FeetSvg({pendulum, prediction, {}});
     ToLaboratory(pendulum.scene, &bodies);
     AddPrediction(InLaboratory(pendulum), InLaboratory(pendulum, prediction), bodies, &animation,
                   one.what);

@@ -3,11 +3,10 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/fit_option_flags.h"
-#include "apps/flags/futures_flags.h"
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/json_file.h"
-#include "ident/bodies/body_recording.h"
+#include "ident/parameters/presets.h"
 #include "ident/problem/folds.h"
 #include "ident/validation/crossvalidation.h"
 #include "ident/validation/scores_report.h"
@@ -80,17 +79,6 @@ Candidates CandidatesOf(const Setups& setups,
 
 using Predictors = std::vector<Predictor>;
 
-// Futures are drawn of candidates with process noise, of which there must be one.
-void CheckDrawn(const Candidates& candidates) {
-  if (DrawnFutures() == 0) return;
-  CheckFromFirstFrame();
-  for (const auto& [name, candidate] : candidates) {
-    if (candidate.model.process_noise != ProcessNoise::kNone) return;
-  }
-  throw Error{
-      "--samples: no candidate has process noise to draw from; add --likelihood=innovation"};
-}
-
 // After observed frames the restarted model takes the place of ridge regression and template, which
 // could not use them.
 void AddBaselines(const FitOptions& options, Predictors* predictors) {
@@ -111,10 +99,8 @@ Predictors MakePredictors(const Candidates& candidates) {
   Predictors predictors;
   const int observed = ObservedFrames();
   for (const auto& [name, candidate] : candidates) {
-    const bool noisy = candidate.model.process_noise != ProcessNoise::kNone;
-    predictors.push_back(ModelPredictor(name, candidate, observed, FramesUse::kForecast,
-                                        ForecastUseFlag(),
-                                        {noisy ? DrawnFutures() : 0, kFuturesSeed}));
+    predictors.push_back(
+        ModelPredictor(name, candidate, observed, FramesUse::kForecast, ForecastUseFlag()));
   }
   if (FLAGS_bands) {
     BandOptions asked;
@@ -146,7 +132,10 @@ int Run() {
   MakePredictors(CandidatesOf(setups));  // refuses wrong flags before any recording is read
   CheckObservedFlag();
   OrFail(CheckOutputFiles({FLAGS_json_out}));
-  const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
+  const bool joints = std::any_of(setups.begin(), setups.end(), [](const auto& setup) {
+    return NeedsJoints(setup.second.roughly().model);
+  });
+  const std::vector<Recording> recordings = LoadFlaggedRecordings({}, joints);
   CheckPushed(recordings);
   const std::vector<PendulumRecording> pendulums = MakePendulumRecordings(recordings);
   CheckObservedFlag(pendulums);
@@ -162,17 +151,15 @@ int Run() {
     throw Error{"--compare has more than one '" + predictor.name +
                 "'; give each configuration its own name"};
   }
-  CheckDrawn(candidates);
   const std::vector<Fold> folds = OrFail(
       FLAGS_folds_file.empty() ? MakeFolds(pendulums, scheme, FLAGS_folds, FLAGS_repeats, Seed())
                                : ReadFolds(FLAGS_folds_file, pendulums));
 
   std::vector<CrossValidation> validations;
-  const RecordedBodies bodies = BodiesOfGroups(recordings);
   ProgressLine line;
   for (const Predictor& predictor : predictors) {
     validations.push_back(CrossValidate(pendulums, folds, predictor, NumThreads(),
-                                        line.OfJobs(predictor.name + ": fold"), bodies,
+                                        line.OfJobs(predictor.name + ": fold"),
                                         ParseLabelKeys(FLAGS_group_by)));
   }
   line.Finish();

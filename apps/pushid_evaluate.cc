@@ -2,7 +2,6 @@
 #include <set>
 
 #include "apps/flags/command_line.h"
-#include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
@@ -11,7 +10,6 @@
 #include "ident/bodies/body_evaluation.h"
 #include "ident/formations/formation_run.h"
 #include "ident/parameters/presets.h"
-#include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"
 #include "ident/validation/scores_report.h"
 
@@ -19,7 +17,7 @@ DEFINE_string(group_by, pushid::LabelKeysText(pushid::UsualGroups()),
               "labels that scores are grouped by: subject, or any label of the manifest");
 DEFINE_string(json_out, "", "write the scores here (JSON)");
 DEFINE_bool(details, false, "print all tables instead of one screen");
-DEFINE_bool(per_recording, false, "print all tables, and a line and the steps of every recording");
+DEFINE_bool(per_recording, false, "print all tables, and a line of every recording");
 
 namespace {
 
@@ -60,10 +58,8 @@ int Run() {
   RequireModel();
   const RestorationFlags restoration = RestorationFlagsFromCommandLine();
   OrFail(CheckOutputFiles({FLAGS_json_out}));
-  const int drawn = DrawnFutures();
   CheckObservedFlag();
   const IdentifiedModel model = LoadFlaggedModel();
-  CheckDraws(model);
   const std::vector<Recording> recordings =
       LoadFlaggedRecordings({}, restoration.given() || NeedsJoints(model.options));
   const std::vector<PendulumRecording> pendulums = MakePendulumRecordings(recordings);
@@ -72,25 +68,23 @@ int Run() {
   OrFail(CheckGroups(pendulums, group_by));
   const std::optional<BodyEvaluation> bodies = Bodies(restoration, model, recordings);
   WarnGrouped(InputWarnings(model, pendulums));
-  const Evaluation evaluation = Evaluate(model, pendulums, ObservedFrames(), group_by,
-                                         ForecastUseFlag(), {drawn, kFuturesSeed});
+  const Evaluation evaluation =
+      Evaluate(model, pendulums, ObservedFrames(), group_by, ForecastUseFlag());
   const FittedModel fitted = OrFail(ReadFittedModel(ModelFile()));
   const std::string person = PersonText(fitted.fit, model, pendulums);
-  const std::string steps = StepsReport(pendulums, FLAGS_per_recording);
   if (FLAGS_details || FLAGS_per_recording) {
-    std::printf("%s\n%s%s%s", EvaluationText(evaluation, FLAGS_per_recording).c_str(),
-                steps.c_str(), TextLines(person).c_str(),
+    std::printf("%s%s%s", EvaluationText(evaluation, FLAGS_per_recording).c_str(),
+                person.empty() ? "" : ("\n" + TextLines(person)).c_str(),
                 bodies ? ("\n" + BodyText(*bodies)).c_str() : "");
   } else {
     Screen screen = EvaluationScreen(evaluation);
     screen.verdict += FittedText(fitted, pendulums);
-    screen.paragraphs.insert(screen.paragraphs.end(), {steps, person});
+    screen.paragraphs.push_back(person);
     if (bodies) screen.tables.push_back(BodyTable(*bodies));
     std::printf("%s", screen.ToString().c_str());
   }
   nlohmann::ordered_json json = ResultHead(kScoresSchema);
   json.update(ToJson(evaluation));
-  AddStepsJson(pendulums, &json);
   if (!person.empty()) json["person"] = person;
   if (bodies) AddBodyJson(*bodies, &json);
   WriteIfNamed(FLAGS_json_out, json);

@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "apps/flags/command_line.h"
-#include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
 #include "apps/flags/overwrite_flag.h"
 #include "apps/flags/recording_flags.h"
@@ -450,7 +449,6 @@ void WriteOutputs(const FormationRun& run, const std::vector<OnsetBand>& onsets,
     animation.dt = scene.dt;
     AddPrediction(run.recording, run.prediction, scene.bodies, &animation);
     AddPushes(run.recording, &animation);
-    animation.figures = FeetSvg(run);
     return WriteFileAtomically(file, AnimationHtml({animation}));
   });
   write(FLAGS_poses_out, [&](auto& file) { return WriteJointsCsv(file, scene); });
@@ -475,13 +473,11 @@ int Run() {
   const RestorationFlags body_flags = RestorationFlagsFromCommandLine();
   CheckOutputFlags(scene.num_people(), body_flags.given());
 
-  DrawnFutures();  // refuses what is out of range
   std::unique_ptr<Restoration> restoration;
   if (body_flags.given()) {
     restoration = LoadFlaggedRestoration(body_flags, scene.num_people());
     if (flags.first_poses.empty()) flags.first_poses = SyntheticPoses(&scene);
   }
-  CheckDraws(model);
   ActAsIn(FLAGS_setting, &model);
   const FormationRun run = RunFormation(model, scene, flags.frames, flags.names);
   WarnGrouped(InputWarnings(model, {run.recording}));
@@ -506,7 +502,7 @@ int Run() {
   for (const std::string& warning : GroupedWarnings(fitted.fit.warnings)) {
     std::printf("warning of the fit: %s\n", warning.c_str());
   }
-  return PrintFutures(model, run.recording, run.num_frames());
+  return kDone;
 }
 
 }  // namespace

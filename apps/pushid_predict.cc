@@ -1,6 +1,5 @@
 // apps: pushid-predict: what happens after a push, from the first frame and the push alone.
 #include "apps/flags/command_line.h"
-#include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
@@ -133,9 +132,7 @@ void WritePendulums(const PendulumRecording& recording, const Prediction& predic
 int Run() {
   const RestorationFlags restoration = CheckedFlags();
   const ChangedPushes changed = ChangedPushesFromCommandLine();
-  DrawnFutures();  // refuses what is out of range
   const IdentifiedModel model = LoadFlaggedModel();
-  CheckDraws(model);
   const std::vector<Recording> recordings =
       LoadFlaggedRecordings({FLAGS_id}, restoration.given() || NeedsJoints(model.options));
   const PendulumRecording recorded = MakePendulumRecording(recordings.front());
@@ -165,7 +162,7 @@ int Run() {
   const FittedModel fitted = OrFail(ReadFittedModel(ModelFile()));
   std::printf("%s", TextLines(PersonText(fitted.fit, model, {recording})).c_str());
   std::printf("%s", PredictedStepsText(recording, prediction).c_str());
-  return PrintFutures(model, recording, FLAGS_frames);
+  return kDone;
 }
 
 }  // namespace

@@ -19,9 +19,6 @@ DEFINE_bool(update, false, "write the push's entry into the manifest");
 DEFINE_string(frames, "",
               "inverse dynamics: the window, its first frame and the frame after it, as in 25:40; "
               "default: detected");
-DEFINE_string(initial_velocity, "auto",
-              "inverse dynamics: velocity of the person at the start of the window: zero, "
-              "estimated, or auto (estimated where the hip moves faster than 0.1 m/s)");
 
 DEFINE_string(sensor, "",
               "force sensor: CSV file time,force or time,fx,fy,fz (s, N); any CSV, STO, MOT or C3D "
@@ -49,7 +46,6 @@ struct PushFlags {
   std::vector<std::string> ids;  // the recordings
   SensorSetup sensor;            // the sensors of the push; without one, inverse dynamics
   PushWindow window = {-1, -1};  // of inverse dynamics; -1: to be detected
-  std::optional<InitialVelocity> initial_velocity;
 };
 
 bool SensorsListed() { return EndsWith(FLAGS_sensor, ".json"); }
@@ -125,7 +121,7 @@ PushFlags PushFlagsFromCommandLine() {
   flags.ids = FLAGS_id.empty() ? SelectedIds() : std::vector{FLAGS_id};
   Require("out", FLAGS_out, "name the CSV file to write");
   if (!FLAGS_sensor.empty()) {
-    RefuseGiven({"frames", "initial_velocity"}, " applies to inverse dynamics, not to --sensor");
+    RefuseGiven({"frames"}, " applies to inverse dynamics, not to --sensor");
   }
   PushWindow& window = flags.window;
   char rest = 0;
@@ -141,8 +137,6 @@ PushFlags PushFlagsFromCommandLine() {
   CheckSensors();
   if (!FLAGS_sensor.empty()) flags.sensor.sensors = SensorsFromFlags();
   flags.sensor.estimate_offset = FLAGS_estimate_offset;
-  OrFail(
-      ParseInitialVelocity("--initial_velocity", FLAGS_initial_velocity, &flags.initial_velocity));
   CheckRecordings(flags);
   return flags;
 }
@@ -179,7 +173,7 @@ MadePush FromSensor(const PushFlags& flags, const Recording& recorded,
 
 MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& recording) {
   constexpr int kSmoothing = 9;  // frames; unsmoothed, 2 mm of noise cause 600 N
-  const PushEstimationOptions options{FLAGS_person, kSmoothing, flags.initial_velocity};
+  const PushEstimationOptions options{FLAGS_person, kSmoothing};
   if (recording.num_frames() < kSmoothing) {
     throw Error{"recording " + recording.id + " has fewer than " + std::to_string(kSmoothing) +
                 " frames, over which a push is smoothed"};
@@ -205,8 +199,8 @@ void WarnOfFirstRow(const MadePush& made) {
   const std::string force = Rounded(made.push.force[0].head<2>().norm(), 3);
   LOG(WARNING) << "recording " << made.id << ": the first row, " << force
                << " N, stands out: the person already moves when the window begins; begin earlier "
-                  "(--frames), or set --initial_velocity=estimated"
-               << (made.push.start_frame == 0 ? " in the manifest" : "");
+                  "(--frames)"
+               << (made.push.start_frame == 0 ? ", or set initial_velocity in the manifest" : "");
 }
 
 void PrintPush(const MadePush& made, double dt) {

@@ -76,7 +76,7 @@ constexpr Heading kHeadings[] = {{"recordings", {"recording_flags"}},
                                  {"fit", {}},
                                  {kRarelyChanged, {}},
                                  {"settings", {}},  // all others: the program's own
-                                 {"prediction", {"observed_flags", "futures_flags"}},
+                                 {"prediction", {"observed_flags"}},
                                  {"bodies", {"restoration_flags", "postprocess_flags"}},
                                  {"output", {"overwrite_flag"}},
                                  {"general", {"command_line"}}};

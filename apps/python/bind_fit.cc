@@ -303,9 +303,7 @@ py::dict DictOf(const Chart& chart) {
           Tuples(chart.lanes, [&](const ChartLane& l) { return tuple(l.name, l.bars, l.look); }),
       "bars"_a =
           Tuples(chart.bars, [&](const ChartBar& b) { return tuple(b.row, b.from, b.to, b.look); }),
-      "labels"_a =
-          Tuples(chart.labels, [&](const ChartLabel& l) { return tuple(l.x, l.y, l.text); }),
-      "is_map"_a = chart.is_map, "levels"_a = chart.levels, "marks"_a = chart.marks,
+      "levels"_a = chart.levels, "marks"_a = chart.marks,
       "x_range"_a = tuple(chart.x_from, chart.x_to), "y_range"_a = tuple(chart.y_from, chart.y_to),
       "logarithmic"_a = tuple(chart.logarithmic_x, chart.logarithmic_y), "bare_y"_a = chart.bare_y,
       "y_categories"_a = chart.y_categories, "y_notes"_a = chart.y_notes,

@@ -90,16 +90,9 @@ std::vector<HipPaths> HipsOf(const std::vector<std::vector<std::vector<BandPoint
   return hips;
 }
 
-// Futures by what the model knows of them: with process noise, its draws; else parameters drawn
-// from their covariance, with the errors of the fitted recordings.
-Result<std::vector<HipPaths>> Drawn(const Model& model, const IdentifiedModel& identified,
-                                    const PendulumRecording& seen, int frames, int samples,
-                                    uint64_t seed) {
-  if (identified.options.process_noise != ProcessNoise::kNone) {
-    Result<Futures> futures = DrawFutures(identified, seen, samples, seed, frames);
-    if (!futures.ok()) return futures.error();
-    return HipsOf(futures.value().paths);
-  }
+// Futures by parameters drawn from their covariance, with the errors of the fitted recordings.
+std::vector<HipPaths> Drawn(const Model& model, const PendulumRecording& seen, int frames,
+                            int samples, uint64_t seed) {
   const BandOptions options{samples, seed};
   const FitResult& fit = model.fitted->fit;
   const std::vector<ParameterSet<double>> sets = SampleParameters(fit, options);
@@ -139,7 +132,7 @@ py::dict PredictOn(const Model& model, const SharedRecording& recording, int obs
     Raise(Fault::kUsage, Error{"samples draws motions from frame 0 on, and observed has seen more; "
                                "leave one out"});
   }
-  if (samples > 0 && !set.empty() && identified.options.process_noise == ProcessNoise::kNone) {
+  if (samples > 0 && !set.empty()) {
     Raise(Fault::kUsage,
           Error{"samples draws the parameters, which set=... fixes; give one of them"});
   }
@@ -147,10 +140,7 @@ py::dict PredictOn(const Model& model, const SharedRecording& recording, int obs
   py::dict dict =
       DictOf(Unwrapped(PredictFrom(identified, seen, observed, frames, use), Fault::kUsage), seen);
   dict["person"] = PersonText(model.fitted->fit, identified, {seen});
-  if (samples > 0) {
-    dict["samples"] =
-        DrawsArray(Unwrapped(Drawn(model, identified, seen, frames, samples, seed), Fault::kUsage));
-  }
+  if (samples > 0) dict["samples"] = DrawsArray(Drawn(model, seen, frames, samples, seed));
   return dict;
 }
 

@@ -198,13 +198,11 @@ py::dict Defaults() {
 }
 
 py::tuple EstimatePushOf(const SharedRecording& recording, int person, int first_frame,
-                         int end_frame, int smoothing, const std::string& initial_velocity) {
+                         int end_frame, int smoothing) {
   const PendulumRecording seen = MakePendulumRecording(*recording);
   PushEstimationOptions options;
   options.person = person;
   options.smoothing_frames = smoothing;
-  Check(ParseInitialVelocity("initial_velocity", initial_velocity, &options.initial_velocity),
-        Fault::kUsage);
   const PushWindow window =
       Unwrapped(DetectPushWindow(seen, options, {first_frame, end_frame}), Fault::kData);
   const EstimatedPush push = Unwrapped(EstimatePush(seen, window, options), Fault::kData);

@@ -265,10 +265,7 @@ std::string TimedErrorsText(const BodyEvaluation& evaluation) {
 TextTable BodyTable(const BodyEvaluation& evaluation) {
   TextTable table = NewTable("bodies, means over recordings");
   const auto found = evaluation.find("restoration");
-  if (found != evaluation.end()) {
-    table.Add(Row("restoration", found->second.mean));
-    table.Add(Row("  frame-weighted", found->second.frame_weighted));
-  }
+  if (found != evaluation.end()) table.Add(Row("restoration", found->second.mean));
   for (const auto& [name, summary] : evaluation) {
     if (name != "restoration") table.Add(Row(Spaced(name), summary.mean));
   }
@@ -349,7 +346,7 @@ BodySummary SummarizeBodies(const std::vector<BodyRecording>& recordings,
     all.push_back(&scores[i]);
   }
   BodySummary summary;
-  static_cast<ScoreMeans&>(summary) = MeansOf(pendulums, all, group_by, true);
+  static_cast<ScoreMeans&>(summary) = MeansOf(pendulums, all, group_by);
   summary.groups = GroupsOf(recordings, scores);
   for (size_t i = 0; i < summary.at.size(); ++i) summary.at[i] = MeanAt(scores, i);
   summary.recordings = std::move(scores);

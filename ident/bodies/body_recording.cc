@@ -121,17 +121,6 @@ Result<std::vector<BodyRecording>> MakeBodyRecordings(const std::vector<Recordin
   return bodies;
 }
 
-RecordedBodies BodiesOfGroups(const std::vector<Recording>& recordings) {
-  const bool groups = std::any_of(recordings.begin(), recordings.end(),
-                                  [](const Recording& r) { return r.people.size() > 1; });
-  if (!groups) return {};
-  const auto made = MakeBodyRecordings(recordings);
-  if (!made.ok()) return {};
-  RecordedBodies bodies;
-  for (const BodyRecording& recording : made.value()) bodies.push_back(recording.bodies);
-  return bodies;
-}
-
 std::vector<PendulumRecording> PendulumsOf(const std::vector<BodyRecording>& recordings) {
   std::vector<PendulumRecording> pendulums;
   for (const BodyRecording& recording : recordings) pendulums.push_back(recording.pendulum);

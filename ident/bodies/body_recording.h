@@ -10,7 +10,6 @@
 #include "datasets/loading/pendulum_recording.h"
 #include "datasets/manifest/recording.h"
 #include "ident/prediction/prediction.h"
-#include "ident/validation/group_metrics.h"
 #include "models/restoration/body.h"
 #include "models/restoration/restoration.h"
 
@@ -65,8 +64,6 @@ struct BodyRecording {
 // plays and that its neighbours do not fill (datasets/manifest/recording.h).
 Result<BodyRecording> MakeBodyRecording(const Recording& recording);
 Result<std::vector<BodyRecording>> MakeBodyRecordings(const std::vector<Recording>& recordings);
-// Bodies of all recordings; of none where not all have such a skeleton, or nobody is in a group.
-RecordedBodies BodiesOfGroups(const std::vector<Recording>& recordings);
 std::vector<PendulumRecording> PendulumsOf(const std::vector<BodyRecording>& recordings);
 
 // Predicted pendulums of people in their first poses: q, rods that move, and whether feet stand,

@@ -118,9 +118,6 @@ class Panel {
       }
       if (!line.dots) svg_.Polyline(placed, line.look);
     }
-    for (const ChartLabel& label : chart_.labels) {
-      svg_.Text(x_(label.x), y_(label.y) + 3.5, label.text, label.look + " small middle");
-    }
     Lanes();
   }
 
@@ -288,11 +285,6 @@ double EntryWidth(const LegendEntry& entry) {
 }  // namespace
 
 double HeightOf(const Chart& chart, double width) {
-  if (chart.is_map) {
-    const Margins m(chart, width);
-    const double metre = (width - m.left - m.right) / (*chart.x_to - *chart.x_from);
-    return m.top + m.bottom + metre * (*chart.y_to - *chart.y_from);
-  }
   // Panels are lower where they are narrower; strips of a row or two keep their height.
   if (chart.y_categories.empty())
     return chart.bare_y ? chart.height : chart.height * std::clamp(width / chart.width, 0.8, 1.0);

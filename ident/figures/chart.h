@@ -50,13 +50,7 @@ struct ChartLane {
 // Along x, in a row of y_categories.
 struct ChartBar {
   double row = 0.0, from = 0.0, to = 0.0;
-  std::string look, tooltip;
-};
-
-// A label in the plot, centred there.
-struct ChartLabel {
-  double x = 0.0, y = 0.0;
-  std::string text, look;
+  std::string look = {}, tooltip = {};
 };
 
 struct Chart {
@@ -66,12 +60,10 @@ struct Chart {
   std::vector<ChartLine> lines = {};
   std::vector<ChartLane> lanes = {};
   std::vector<ChartBar> bars = {};
-  std::vector<ChartLabel> labels = {};
   std::vector<double> levels = {};               // dashed, across
   std::vector<double> marks = {};                // upright
   std::optional<double> x_from = {}, x_to = {};  // instead of the data's own range
   std::optional<double> y_from = {}, y_to = {};
-  bool is_map = false;         // a metre is as long upwards as across; x_from to y_to are given
   bool logarithmic_x = false;  // x and y are given as log10
   bool logarithmic_y = false;
   bool bare_y = false;  // no numbers upwards: the rows are few and named

@@ -259,11 +259,10 @@ void JudgeContrastByPeople(const std::vector<PendulumRecording>& recordings, Fit
     if (recording.num_people() != 1) return;
     apart[{recording.subject_ids[0], LabelOf(recording, 0, contrast.label)}].push_back(recording);
   }
-  // As of the joint fit, without slopes, pools and its deviations.
+  // Options of the joint fit, without slopes and pools.
   FitOptions options = fitted;
   options.contrast.clear();
   options.num_threads = 1;
-  options.start_deviations.clear();
   for (ParameterSpec& spec : options.table.specs) {
     spec.pooled = false;
     if (spec.slope_of) spec.free = false;

@@ -221,7 +221,7 @@ Result<SolvedFit> SetUpAndSolve(const std::vector<PendulumRecording>& recordings
       trains ? TrainLargeNetwork(recordings, options, progress) : Result<FitOptions>(options);
   if (!trained.ok()) return trained.error();
   SolvedFit fit{FitProblem(recordings, trained.value()), {}};
-  // By given weights, what was trained together is an optimum of it all already.
+  // What was trained together by given weights is an optimum of it all already.
   if (trains && !options.estimate_weights) {
     fit.problem.mutable_options()->gradient_tolerance = std::numeric_limits<double>::infinity();
   }

@@ -43,7 +43,7 @@ struct WeightedSolution {
 // problem: on return as it was weighed last, without a demand that was dropped.
 WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progress = nullptr);
 
-// By rollouts as above, or by a likelihood of single steps (solver/solver.h), as the
+// Solves by rollouts (SolveWeighted), or by a likelihood of single steps (solver/solver.h), as the
 // problem's options say.
 WeightedSolution SolveFit(FitProblem* problem, const SolveProgress& progress = nullptr);
 

@@ -128,13 +128,6 @@ bool GoesTogether(const FitOptions& o, const std::vector<PendulumRecording>& rec
          });
 }
 
-// The stance that the recorded feet show; none for presets with a stance of their own.
-std::optional<Stance> StanceFromFeet(const std::vector<PendulumRecording>& recordings,
-                                     const std::string& preset) {
-  const std::optional<Stance> of_movers = StanceOfMovers(preset);
-  return of_movers ? std::optional(StanceOf(FeetOf(recordings), *of_movers)) : std::nullopt;
-}
-
 }  // namespace
 
 GivenOptions Merged(GivenOptions given, const GivenOptions& more) {
@@ -183,14 +176,15 @@ Result<FitOptions> MakeFitOptions(const GivenOptions& given,
     const Result<FitOptions> group = OverPreset("group", given, must_act);
     return group.ok() ? group : single;
   }
-  // With the stance that the feet tell where nothing says another.
+  // The stance is that of the recorded feet where nothing says another.
   const std::string chosen = PresetFor(preset, *recordings);
   const std::string* asked = Find(given, "stance");
-  const std::optional<Stance> told = StanceFromFeet(*recordings, chosen);
-  const bool open = asked == nullptr || *asked == kAutoStance;
-  if (open && told && *told != Stance::kSlide) {
+  const std::optional<Stance> of_movers = StanceOfMovers(chosen);  // none: the preset has its own
+  const bool open = of_movers && (asked == nullptr || *asked == kAutoStance);
+  const Stance told = open ? StanceOf(FeetOf(*recordings), *of_movers) : Stance::kSlide;
+  if (told != Stance::kSlide) {
     Result<FitOptions> made =
-        OverPreset(chosen, Merged(given, {{"stance", NameOf(*told)}}), must_act);
+        OverPreset(chosen, Merged(given, {{"stance", NameOf(told)}}), must_act);
     if (made.ok() && GoesTogether(made.value(), *recordings)) return made;
   }
   return OverPreset(chosen, given, must_act);
@@ -200,13 +194,6 @@ Result<FitSetup> FitSetup::Make(GivenOptions given, GivenOptions must_act) {
   Result<FitOptions> roughly = MakeFitOptions(given, nullptr, must_act);
   if (!roughly.ok()) return roughly.error();
   return FitSetup(std::move(given), std::move(must_act), std::move(roughly.value()));
-}
-
-Result<FitOptions> FitSetup::For(const std::vector<PendulumRecording>& recordings) const {
-  const std::string preset = PresetFor(PresetIn(given_), recordings);
-  const std::optional<Stance> told = StanceFromFeet(recordings, preset);
-  if (preset == roughly_.preset && (!told || *told == roughly_.model.stance)) return roughly_;
-  return MakeFitOptions(given_, &recordings, must_act_);
 }
 
 std::vector<FitOptions> FitSetup::OtherStances(const std::vector<PendulumRecording>& recordings,

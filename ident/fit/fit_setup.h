@@ -33,15 +33,16 @@ Result<FitOptions> MakeFitOptions(const GivenOptions& given,
                                   const std::vector<PendulumRecording>* recordings = nullptr,
                                   const GivenOptions& must_act = {});
 
-// MakeFitOptions in two steps; the second builds again only where the recordings decide for another
-// preset than the first took.
+// MakeFitOptions in two steps: before recordings are read, and for them.
 class FitSetup {
  public:
   static Result<FitSetup> Make(GivenOptions given, GivenOptions must_act = {});
 
-  // As far as it does not depend on the recordings: how they are loaded, whether bodies are fitted.
+  // The options as far as they do not depend on the recordings: how these are loaded.
   const FitOptions& roughly() const { return roughly_; }
-  Result<FitOptions> For(const std::vector<PendulumRecording>& recordings) const;
+  Result<FitOptions> For(const std::vector<PendulumRecording>& recordings) const {
+    return MakeFitOptions(given_, &recordings, must_act_);
+  }
   // These options with each other stance that goes with what was given; none where a stance was
   // given, or the preset has its own.
   std::vector<FitOptions> OtherStances(const std::vector<PendulumRecording>& recordings,

@@ -91,13 +91,6 @@ double StepMargin(double support, double factor) {
   return support * (f - 1.0 - kAgainstNone * (1.0 / f - 1.0));
 }
 
-double FactorAtMargin(double support, double margin) {
-  const double k = 1.0 - kAgainstNone + margin / support;
-  const double root = std::hypot(k, 2.0 * std::sqrt(kAgainstNone));
-  const double f = k > 0.0 ? 0.5 * (k + root) : 2.0 * kAgainstNone / (root - k);
-  return std::clamp(f, kLeastFactor, kMostFactor);
-}
-
 std::vector<double> StepMargins(const ModelOptions& options,
                                 const std::vector<ParameterSet<double>>& parameters,
                                 const PendulumRecording& recording,

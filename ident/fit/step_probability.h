@@ -34,8 +34,6 @@ namespace pushid {
 
 // f: the factor on a support of so many m that somebody would just step with.
 double StepMargin(double support, double factor);
-// The factor, positive for every margin.
-double FactorAtMargin(double support, double margin);
 
 // One person in one recording.
 struct StepOutcome {

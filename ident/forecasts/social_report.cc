@@ -46,17 +46,6 @@ using Groups = std::vector<GroupMotion>;
 constexpr size_t kMostStatesDrawn = 12;
 constexpr double kFramesAMinute = 60.0 * kWordRate;
 
-// Symbols that count, of everybody.
-std::vector<Symbols> StatesOfAll(const Groups& groups, const StateFunction& states) {
-  std::vector<Symbols> all;
-  for (const GroupMotion& group : groups) {
-    for (const Symbols& person : StatesOfPeople(group, states)) {
-      all.push_back(Counted(group, person));
-    }
-  }
-  return all;
-}
-
 // Steps into frame k, of those who last so long.
 std::vector<Symbols> StepsInto(const std::vector<Symbols>& all, size_t k) {
   std::vector<Symbols> steps;
@@ -69,23 +58,21 @@ std::vector<Symbols> StepsInto(const std::vector<Symbols>& all, size_t k) {
 void AddWords(const MotionWords& words, const Groups& groups, SocialRow* row) {
   if (words.size() == 0) return;
   std::vector<double> sums, counts;
-  double sum = 0.0, count = 0.0;
   for (const BodyMotion& person : CountedMotions(groups)) {
     const std::vector<double> scores = words.Scores(person);
     sums.resize(std::max(sums.size(), scores.size()));
     counts.resize(sums.size());
     for (size_t k = 0; k < scores.size(); ++k) sums[k] += scores[k], counts[k] += 1.0;
-    sum += std::accumulate(scores.begin(), scores.end(), 0.0);
-    count += static_cast<double>(scores.size());
   }
-  if (count > 0.0) row->ndms = sum / count;
+  const double count = std::accumulate(counts.begin(), counts.end(), 0.0);
+  if (count > 0.0) row->ndms = std::accumulate(sums.begin(), sums.end(), 0.0) / count;
   for (size_t k = 0; k < sums.size(); ++k) row->ndms_by_frame.push_back(sums[k] / counts[k]);
 }
 
 // words: null where recorded motion meets itself.
 SocialRow Compared(const std::string& name, const Groups& groups, const SocialReport& report,
                    const MotionWords* words) {
-  const std::vector<Symbols> counted = StatesOfAll(groups, report.cues.states);
+  const std::vector<Symbols> counted = CountedStates(groups, report.cues.states);
   SocialRow row;
   row.name = name;
   row.transitions = CountTransitions(counted, report.cues.states.num_symbols(), Transitions::kAll);
@@ -239,7 +226,7 @@ std::optional<SocialReport> CompareSocially(const std::vector<BodyRecording>& re
   report.cues = cues;
   const Groups annotated = groups_from(first_frame, true);
   report.first_frame = static_cast<int>(FirstStep(annotated.front())) + 1;
-  report.transitions = CountTransitions(StatesOfAll(annotated, cues.states),
+  report.transitions = CountTransitions(CountedStates(annotated, cues.states),
                                         cues.states.num_symbols(), Transitions::kAll);
   report.rows.push_back(Compared("recorded", groups_from(first_frame, false), report, nullptr));
   const MotionWords words(CountedMotions(annotated));

@@ -1,6 +1,5 @@
 #include "ident/formations/formation_files.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -13,9 +12,8 @@
 #include "datasets/formats/force_csv.h"
 #include "datasets/formats/trajectories.h"
 #include "datasets/manifest/manifest.h"
-#include "ident/bodies/animation.h"
+#include "ident/figures/chart.h"
 #include "ident/figures/svg.h"
-#include "ident/prediction/predicted_steps.h"
 
 namespace pushid {
 namespace {
@@ -99,83 +97,6 @@ void AddOnset(const FormationRun& run, int person, const std::vector<OnsetBand>&
     }
   }
   chart->lines.push_back({{{run.Seconds(onset), y}}, kOnsetDot, true});
-}
-
-constexpr double kSoleWidth = 0.09;                 // m
-constexpr double kAir = 0.15, kShortestFeet = 1.2;  // m
-constexpr double kPixelsPerMetre = 300, kWidestFeet = 1000, kSmallestFigure = 640;
-constexpr int kCornersOfSole = 24;
-
-constexpr char kSeenSoleLook[] = "ink";
-constexpr char kPredictedSoleLook[] = "stroke:none;fill:#3b82f6;fill-opacity:.28";
-
-// Feet of one person by one source.
-struct FeetTrack {
-  int person;
-  bool predicted;
-  std::vector<Footprint> prints;
-  std::vector<Eigen::Vector2d> capture;
-};
-
-std::vector<FeetTrack> TracksOf(const FormationRun& run) {
-  std::vector<FeetTrack> tracks;
-  const auto add = [&](const FootprintsOfPeople& prints, const HipPaths& hips, bool predicted) {
-    for (size_t n = 0; n < prints.size(); ++n) {
-      const double rod = run.recording.scene.people[n].body.rod_length;
-      tracks.push_back({static_cast<int>(n), predicted, prints[n],
-                        CapturePath(hips[n], rod, run.recording.scene.dt)});
-    }
-  };
-  const FootprintsOfPeople predicted = PredictedFootprints(run.recording, run.prediction);
-  if (!run.prediction.status.ok || predicted.empty()) return tracks;
-  add(RecordedFootprints(run.recording), run.recording.hip, false);
-  add(predicted, run.prediction.hip, true);
-  return tracks;
-}
-
-// The landing's time in a predicted sole, and beside a recorded one, where feet do not meet.
-void AddSole(const FormationRun& run, const Footprint& print, bool predicted, Chart* chart) {
-  const Eigen::Rotation2Dd turn(run.recording.facing);
-  ChartPoints outline;  // an ellipse, closed
-  for (int i = 0; i <= kCornersOfSole; ++i) {
-    const double angle = 2.0 * M_PI * i / kCornersOfSole;
-    const Eigen::Vector2d corner =
-        print.place + turn * Eigen::Vector2d(0.5 * ((kSoleBefore - kSoleBehind) +
-                                                    (kSoleBefore + kSoleBehind) * std::cos(angle)),
-                                             0.5 * kSoleWidth * std::sin(angle));
-    outline.emplace_back(corner[0], corner[1]);
-  }
-  if (predicted) {
-    chart->bands.push_back({outline, {}, kPredictedSoleLook});
-  } else {
-    chart->lines.push_back({outline, kSeenSoleLook});
-  }
-  if (print.landing == 0) return;
-  const double side = print.foot == Foot::kLeft ? 1.0 : -1.0;
-  const Eigen::Vector2d at =
-      print.place + turn * Eigen::Vector2d(0.5 * (kSoleBefore - kSoleBehind),
-                                           predicted ? 0.0 : 0.9 * side * kSoleWidth);
-  chart->labels.push_back({at[0], at[1], Rounded(run.Seconds(print.landing), 3) + " s", "ink"});
-}
-
-// Sets the limits so that all is in the map, with some air and a least size, as wide as metres
-// need.
-void FitMap(Chart* chart) {
-  Eigen::Array2d low(INFINITY, INFINITY), high = -low;
-  const auto see = [&](const ChartPoints& points) {
-    for (const auto& [x, y] : points) {
-      low = low.min(Eigen::Array2d(x, y));
-      high = high.max(Eigen::Array2d(x, y));
-    }
-  };
-  for (const ChartLine& line : chart->lines) see(line.points);
-  for (const ChartBand& band : chart->bands) see(band.lower);
-  low -= kAir, high += kAir;
-  const double more = std::max(0.0, 0.5 * (kShortestFeet - (high - low)[0]));
-  chart->is_map = true;
-  chart->x_from = low[0] - more, chart->x_to = high[0] + more;
-  chart->y_from = low[1], chart->y_to = high[1];
-  chart->width = std::min(kWidestFeet, kPixelsPerMetre * (*chart->x_to - *chart->x_from));
 }
 
 }  // namespace
@@ -274,55 +195,6 @@ std::string WaveSvg(const FormationRun& run, const std::string& title,
     figure.legend.push_back({"90 % interval from the uncertainty of the parameters", kBandBorder});
   }
   return DrawFigure(figure, kWaveWidth, title).ToString();
-}
-
-std::optional<Figure> FeetFigure(const FormationRun& run) {
-  Chart chart{"feet from above", "forward, m", "to the left, m"};
-  bool recorded = false;
-  for (const FeetTrack& track : TracksOf(run)) {
-    recorded = recorded || !track.predicted;
-    for (const Footprint& print : track.prints) AddSole(run, print, track.predicted, &chart);
-    ChartPoints capture;
-    for (const Eigen::Vector2d& point : track.capture) capture.emplace_back(point[0], point[1]);
-    chart.lines.push_back({capture, track.predicted ? kPredictedLook : kMeasuredLook});
-    if (run.num_people() < 2) continue;
-    const Vector4<double>& q = run.recording.scene.people[track.person].start.q;
-    chart.labels.push_back({q[0], q[1], run.recording.subject_ids[track.person], "faint"});
-  }
-  if (chart.lines.empty()) return std::nullopt;
-  FitMap(&chart);
-  Figure figure;
-  if (recorded) figure.legend = {{"recorded feet and capture point", kMeasuredLook}};
-  figure.legend.push_back({"predicted capture point", kPredictedLook});
-  figure.legend.push_back({"predicted feet", kPredictedSoleLook});
-  figure.panels = {chart};
-  return figure;
-}
-
-std::vector<std::string> FeetSvg(const FormationRun& run) {
-  const std::optional<Figure> feet = FeetFigure(run);
-  if (!feet) return {};
-  const Chart& chart = feet->panels.front();
-  const double width = std::max(chart.width, kSmallestFigure);
-  return {DrawFigure(*feet, width, chart.title).ToInline()};
-}
-
-TextTable FeetNumbers(const FormationRun& run) {
-  TextTable table({"person", "source", "what", "from_s", "to_s", "x_m", "y_m"});
-  for (const FeetTrack& track : TracksOf(run)) {
-    const auto add = [&](const std::string& what, int from, int to, const Eigen::Vector2d& place) {
-      table.Add({run.recording.subject_ids[track.person],
-                 track.predicted ? "predicted" : "recorded", what, DoubleText(run.Seconds(from)),
-                 DoubleText(run.Seconds(to)), DoubleText(place[0]), DoubleText(place[1])});
-    };
-    for (const Footprint& print : track.prints) {
-      add(NameOf(print.foot) + " foot", print.landing, print.lift_off, print.place);
-    }
-    for (size_t t = 0; t < track.capture.size(); ++t) {
-      add("capture point", static_cast<int>(t), static_cast<int>(t), track.capture[t]);
-    }
-  }
-  return table;
 }
 
 }  // namespace pushid

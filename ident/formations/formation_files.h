@@ -2,12 +2,10 @@
 // pushid itself read.
 #pragma once
 
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "datasets/files/error.h"
-#include "ident/figures/chart.h"
-#include "ident/figures/text_table.h"
 #include "ident/formations/formation_run.h"
 
 namespace pushid {
@@ -30,12 +28,5 @@ inline constexpr int kMostPeopleInWave = 300;
 // who falls does not fade the others.
 std::string WaveSvg(const FormationRun& run, const std::string& title,
                     const std::vector<OnsetBand>& onsets = {});
-
-// Feet from above: where they stood and where the model's are put, with the times of landings, and
-// the paths of the capture points (prediction/predicted_steps.h); nothing where the model has no
-// feet that step. And the numbers behind it.
-std::optional<Figure> FeetFigure(const FormationRun& run);
-std::vector<std::string> FeetSvg(const FormationRun& run);  // for a page with SvgStyle
-TextTable FeetNumbers(const FormationRun& run);
 
 }  // namespace pushid

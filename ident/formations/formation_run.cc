@@ -74,7 +74,7 @@ constexpr int kSpeedFrames = 6;
 // Horizontal, m, from the first that was seen; frames without the person are left out.
 struct Track {
   std::vector<int> frames;
-  std::vector<Eigen::Vector2d> places;
+  HipPath places;
 };
 
 Track TrackOf(const std::vector<Eigen::Vector3d>& positions, double metres) {
@@ -82,19 +82,12 @@ Track TrackOf(const std::vector<Eigen::Vector3d>& positions, double metres) {
   for (size_t frame = 0; frame < positions.size(); ++frame) {
     if (!positions[frame].head<2>().allFinite()) continue;
     track.frames.push_back(static_cast<int>(frame));
-    track.places.push_back(metres * positions[frame].head<2>());
+    track.places.emplace_back(metres * positions[frame].x(), metres * positions[frame].y(), 0.0);
   }
   return track;
 }
 
-int OnsetOf(const Track& track) {
-  for (size_t i = 0; i < track.places.size(); ++i) {
-    if ((track.places[i] - track.places[0]).norm() >= kOnsetDistance) return track.frames[i];
-  }
-  return -1;
-}
-
-double PeakSpeedOf(const Track& track, const Eigen::Vector2d& way, double rate) {
+double PeakSpeedOf(const Track& track, const Eigen::Vector3d& way, double rate) {
   double peak = 0.0;
   for (size_t i = kSpeedFrames; i < track.places.size(); ++i) {
     const double seconds = (track.frames[i] - track.frames[i - kSpeedFrames]) / rate;
@@ -415,7 +408,8 @@ MeasuredWave MeasureWave(const std::string& name, const PointMotion& motion) {
   int first = -1;
   for (size_t i = 0; i < motion.positions.size(); ++i) {
     tracks.push_back(TrackOf(motion.positions[i], metres));
-    onsets.push_back(OnsetOf(tracks.back()));
+    const int onset = OnsetFrame(tracks.back().places);
+    onsets.push_back(onset < 0 ? onset : tracks.back().frames[onset]);
     const bool moves = onsets.back() >= 0;
     if (moves && (first < 0 || onsets.back() < onsets[static_cast<size_t>(first)])) {
       first = static_cast<int>(i);
@@ -423,8 +417,8 @@ MeasuredWave MeasureWave(const std::string& name, const PointMotion& motion) {
   }
   if (first < 0) return wave;
   const Track& origin = tracks[static_cast<size_t>(first)];
-  Eigen::Vector2d way = Eigen::Vector2d::Zero();  // from the first place to the farthest
-  for (const Eigen::Vector2d& place : origin.places) {
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();  // from the first place to the farthest
+  for (const Eigen::Vector3d& place : origin.places) {
     if ((place - origin.places[0]).norm() > way.norm()) way = place - origin.places[0];
   }
   way.normalize();

@@ -148,13 +148,13 @@ MaybeError CheckFit(const LargeNetworkFit& fit) {
 }
 
 // Recordings whose rollout fails at the start.
-Result<std::vector<ShortenedRecording>> FailingAtTheStart(const LargeNetworkFit& fit) {
+Result<std::vector<FailedRollout>> FailingAtTheStart(const LargeNetworkFit& fit) {
   Result<AdjointGradient> whole =
       AdjointGradient::Create(fit.training, fit.model, fit.map, fit.sigmas);
   if (!whole.ok()) return whole.error();
   const AdjointCost start = whole.value().Evaluate(
       fit.shared.data(), fit.model.learned->weights.data(), nullptr, nullptr);
-  std::vector<ShortenedRecording> shortened;
+  std::vector<FailedRollout> shortened;
   for (int i = 0; !start.ok() && i < static_cast<int>(fit.training.size()); ++i) {
     if (!start.status[i].ok) shortened.push_back({i, start.status[i]});
   }
@@ -192,13 +192,13 @@ LargeNetworkOptions OptionsFor(const LearnedTerms& learned) {
 Result<LargeNetworkSolution> FitLargeNetwork(const LargeNetworkFit& fit,
                                              const LargeNetworkProgress& progress) {
   if (const MaybeError error = CheckFit(fit)) return *error;
-  Result<std::vector<ShortenedRecording>> failing = FailingAtTheStart(fit);
+  Result<std::vector<FailedRollout>> failing = FailingAtTheStart(fit);
   if (!failing.ok()) return failing.error();
   LargeNetworkSolution solution;
   solution.shortened = std::move(failing.value());
   std::vector<AdjointRecording> recordings = fit.training;
-  for (const ShortenedRecording& one : solution.shortened) {
-    recordings[one.training].horizon = one.status.frame;
+  for (const FailedRollout& one : solution.shortened) {
+    recordings[one.recording].horizon = one.status.frame;
   }
   Result<Training> training = Training::Create(fit, std::move(recordings));
   if (!training.ok()) return training.error();

@@ -20,6 +20,7 @@
 
 #include "ident/parameters/fit_options.h"
 #include "ident/parameters/parameter_table.h"
+#include "ident/problem/fit_point.h"
 #include "residuals/adjoint/adjoint_gradient.h"
 
 namespace pushid {
@@ -32,7 +33,7 @@ struct LargeNetworkOptions {
   uint64_t seed = 1;                     // of their order
   double weight_sigma = 1.0;             // of the prior that ties the weights to zero; 0: none
 };
-// With the rates of what is trained: LDP's networks have 3e-4 throughout, as published.
+// Options with the rates of what is trained: LDP's networks have 3e-4 throughout, as published.
 LargeNetworkOptions OptionsFor(const LearnedTerms& learned);
 
 // The prior of a shared parameter, on the fitted scale.
@@ -61,17 +62,12 @@ struct LargeNetworkPass {
   int failures = 0;   // rollouts that left the domain
 };
 
-// A training recording that could not be rolled out to its end at the start: held to the frames
-// before throughout.
-struct ShortenedRecording {
-  int training = 0;  // its index
-  RolloutStatus status;
-};
-
 struct LargeNetworkSolution {
   std::vector<double> shared, weights;
   std::vector<LargeNetworkPass> passes;
-  std::vector<ShortenedRecording> shortened;
+  // Training recordings that could not be rolled out to their end at the start: held to the frames
+  // before throughout.
+  std::vector<FailedRollout> shortened;
 
   // The trained network; like: of its shape.
   std::shared_ptr<const LearnedTerms> Network(LearnedTerms like) const;

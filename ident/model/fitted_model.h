@@ -43,10 +43,10 @@ struct FitResult : ModelFacts {
   // Value of each pooled parameter in each setting or condition, where these differ.
   std::map<std::string, std::map<std::string, Estimate>> settings;
   std::optional<Contrast> contrast;           // none where --contrast did not ask for one
-  std::optional<PushedFeet> feet;             // none in older files
+  std::optional<PushedFeet> feet;             // none where no feet were recorded
   std::optional<LikelihoodScore> likelihood;  // of a fit by one of single steps
   Uncertainty uncertainty;
-  ModelVerdict verdict;  // not checked in older files
+  ModelVerdict verdict;
   Diagnostics diagnostics;
   std::vector<FittedRecording> recordings;
 
@@ -57,7 +57,7 @@ struct FitResult : ModelFacts {
   std::string message;
   Warnings warnings;
   double solve_seconds = 0.0;
-  std::vector<Work> work;  // of solve and judgement; empty in older files
+  std::vector<Work> work;  // of solve and judgement
 
   bool ok() const { return best_start >= 0; }
   // Where ok().

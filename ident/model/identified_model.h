@@ -43,8 +43,8 @@ struct UsualPush {
   double impulse = 80.0;  // N s
 };
 
-// The pushes and people that a model was fitted to (model/model_rollout.h). Whatever was not there,
-// or was not written by older versions, is empty.
+// The pushes and people that a model was fitted to (model/model_rollout.h). Whatever was not there
+// is empty.
 struct PushRange {
   ValueRange external_s, net_s;  // durations of the rows, s
   ValueRange impulse_per_mass;   // m/s
@@ -52,8 +52,7 @@ struct PushRange {
   ValueRange spacing;            // from everybody's cart to the nearest other one, m
   std::vector<FittedPerson> people;
   std::optional<UsualPush> usual;
-  // Angles between pushes and the model's x axis, degrees; empty in files that are older than it.
-  ValueRange direction;
+  ValueRange direction;  // angles between pushes and the model's x axis, degrees
 
   ValueRange& Durations(PushKind kind) { return kind == PushKind::kExternal ? external_s : net_s; }
   const ValueRange& Durations(PushKind kind) const {
@@ -105,11 +104,10 @@ struct ForecastRule {
 struct ModelFacts {
   // Values as they act, fixed ones too. Indexed by Parameter.
   ParameterSet<double> parameters{};
-  std::optional<PushRange> push_range;  // that it was fitted to; none in files older than it
-  // None where nobody stepped or everybody did, and in older files.
-  std::optional<StepProbability> step_probability;
-  std::optional<ForecastRule> forecasts;  // from first frames; learned where asked
-  Behaviour behaviour;                    // whether its people settle
+  std::optional<PushRange> push_range;              // that it was fitted to; none without a fit
+  std::optional<StepProbability> step_probability;  // none where nobody stepped or everybody did
+  std::optional<ForecastRule> forecasts;            // from first frames; learned where asked
+  Behaviour behaviour;                              // whether its people settle
 };
 
 struct FitResult;

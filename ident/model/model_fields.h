@@ -17,36 +17,20 @@ inline void Fields(JsonArchive& a, Interval& i) {
   a.Pair("interval_95", i.lower, i.upper);
 }
 
-// Models of older versions have Student's quantile everywhere.
-inline void QuantileField(JsonArchive& a, double* quantile) {
-  if (a.Has("quantile")) {
-    a("quantile", *quantile);
-  } else if (a.Has("freedom")) {
-    double freedom = 1.0;
-    a("freedom", freedom);
-    *quantile = StudentQuantile95(freedom);
-  }
-}
-
 // The interval that decides; the others beside it are what it is made of.
 inline void WriteInterval(JsonArchive& a, const Interval& i) {
   a.Written("interval", [&i] { return std::vector<double>{i.lower, i.upper}; });
 }
 
 inline void Fields(JsonArchive& a, Estimate& e) {
-  // Models written before shares were computed say nothing of them, nor of degrees of freedom.
-  const bool shares = a.Has("shares");
   PUSHID_FIELDS(a, e, name, value);
   WriteInterval(a, e.interval());
   PUSHID_FIELDS(a, e, standard_error, standard_error_naive);
   a.Pair("interval_95", e.lower95, e.upper95);
-  if (shares) {
-    a("freedom", e.freedom);
-    QuantileField(a, &e.quantile);
-    a.Group("shares", [&](auto& g) { PUSHID_FIELDS(g, e.shares, data, prior, settling); });
-    a.Group("pull",
-            [&](auto& g) { g("prior", e.shares.prior_pull, "settling", e.shares.settling_pull); });
-  }
+  PUSHID_FIELDS(a, e, freedom, quantile);
+  a.Group("shares", [&](auto& g) { PUSHID_FIELDS(g, e.shares, data, prior, settling); });
+  a.Group("pull",
+          [&](auto& g) { g("prior", e.shares.prior_pull, "settling", e.shares.settling_pull); });
   a.Optional("total", e.total);
   a.Optional("these_people", e.these);
   PUSHID_FIELDS(a, e, unit, status);
@@ -57,7 +41,7 @@ inline void Fields(JsonArchive& a, Combination& c) {
   WriteInterval(a, c.interval());
   a("standard_error", c.standard_error);
   a.Pair("interval_95", c.lower95, c.upper95);
-  QuantileField(a, &c.quantile);
+  a("quantile", c.quantile);
   a.Optional("total", c.total);
   a.Optional("these_people", c.these);
   a("unit", c.unit);
@@ -79,11 +63,7 @@ inline void Fields(JsonArchive& a, Contrast& c) {
 
 PUSHID_FIELDS_OF(NullDirection, parameters, coefficients, identified, sentence)
 
-inline void Fields(JsonArchive& a, SettlingDemand& s) {
-  PUSHID_FIELDS(a, s, binds, contradicted);
-  a.Newer("unmet", s.unmet);
-  PUSHID_FIELDS(a, s, rise, free_seconds);
-}
+PUSHID_FIELDS_OF(SettlingDemand, binds, contradicted, unmet, rise, free_seconds)
 
 // All but the estimates, which stand at the top of the file.
 inline void Fields(JsonArchive& a, Uncertainty& u) {
@@ -93,20 +73,16 @@ inline void Fields(JsonArchive& a, Uncertainty& u) {
         u.clustered = name != "none";
         if (u.clustered) a("clustered_by", u.clustered_by);
       });
-  a.Newer("two_way", u.two_way);
-  a("clusters", u.num_clusters);
-  a.Newer("people", u.num_people, "about_people_like_them", u.about_people_like_them);
-  a("residuals", u.num_residuals);
-  a.Newer("full_hessian", u.full_hessian);
-  PUSHID_FIELDS(a, u, sigma, freedom, too_few_clusters, condition_number);
+  a("two_way", u.two_way, "clusters", u.num_clusters, "people", u.num_people,
+    "about_people_like_them", u.about_people_like_them, "residuals", u.num_residuals);
+  PUSHID_FIELDS(a, u, full_hessian, sigma, freedom, too_few_clusters, condition_number);
   a.Written("fitted", [&] {
     std::vector<std::string> names;
     for (const Estimate& e : u.estimates) names.push_back(e.name);
     return names;
   });
   a("covariance_fitted_scale", u.covariance);
-  PUSHID_FIELDS(a, u, correlation, null_directions);
-  a.Newer("held_directions", u.held_directions, "settling", u.settling);
+  PUSHID_FIELDS(a, u, correlation, null_directions, held_directions, settling);
 }
 
 PUSHID_FIELDS_OF(SubjectParameters, mass_kg, pooled)
@@ -169,19 +145,14 @@ inline void Fields(JsonArchive& a, Work& w) {
     "seconds", w.seconds);
 }
 
-inline void Fields(JsonArchive& a, FittedRecording& r) {
-  PUSHID_FIELDS(a, r, id, frames);
-  a.Newer("people", r.people);
-  PUSHID_FIELDS(a, r, cost, failure, content_hash);
-}
+PUSHID_FIELDS_OF(FittedRecording, id, frames, people, cost, failure, content_hash)
 
 // Behaviour and range of the model.
 
 inline void Fields(JsonArchive& a, SettlingSimulation& s) {
   PUSHID_FIELDS(a, s, setting, people);
   a("mass_kg", s.mass, "impulse_Ns", s.impulse, "speed_m_s", s.speed, "lean_rad", s.lean,
-    "distance_m", s.distance);
-  a.Newer("advance_m", s.advance, "pushed_advance_m", s.pushed_advance);
+    "distance_m", s.distance, "advance_m", s.advance, "pushed_advance_m", s.pushed_advance);
   PUSHID_FIELDS(a, s, fell, settled);
 }
 
@@ -205,8 +176,7 @@ inline void Fields(JsonArchive& a, FittedPerson& p) {
 }
 
 inline void Fields(JsonArchive& a, UsualPush& p) {
-  a("kind", p.kind, "duration_s", p.duration, "height_of_rod", p.height);
-  a.Newer("impulse_N_s", p.impulse);
+  a("kind", p.kind, "duration_s", p.duration, "height_of_rod", p.height, "impulse_N_s", p.impulse);
   a.Check(p.duration > 0.0 && p.impulse > 0.0 && std::isfinite(p.height),
           "a usual push has numbers that cannot be");
 }
@@ -259,16 +229,13 @@ inline void Fields(JsonArchive& a, LikelihoodScore& s) {
 
 PUSHID_FIELDS_OF(Finding, kind, recording, about, value)
 
-inline void Fields(JsonArchive& a, StartDiagnostics& s) {
-  PUSHID_FIELDS(a, s, condition_number, null_directions, without_effect, notes);
-  a.Newer("findings", s.findings);
-}
+PUSHID_FIELDS_OF(StartDiagnostics, condition_number, null_directions, without_effect, notes,
+                 findings)
 
 PUSHID_FIELDS_OF(Outlier, frame, person, error, weight)
 
 inline void Fields(JsonArchive& a, RecordingDiagnostics& r) {
-  a("id", r.id, "explained_percent", r.explained);
-  a.Newer("moved", r.moved);
+  a("id", r.id, "explained_percent", r.explained, "moved", r.moved);
   PUSHID_FIELDS(a, r, cost, lag1, ljung_box, ljung_box_p, outliers);
 }
 
@@ -314,9 +281,7 @@ inline void Fields(JsonArchive& a, Profile& p) {
 }
 
 inline void Fields(JsonArchive& a, Bootstrap& b) {
-  PUSHID_FIELDS(a, b, replicas, seed);
-  a.Newer("drawn_by", b.drawn_by, "drawn_from", b.drawn_from, "people_shared", b.people_shared);
-  a("failed", b.failed);
+  PUSHID_FIELDS(a, b, replicas, seed, drawn_by, drawn_from, people_shared, failed);
   a.Rows("parameters", std::tie(b.names, b.units, b.standard_error, b.lower95, b.upper95),
          [&b](auto& row, size_t i) {
            row("name", b.names[i], "unit", b.units[i], "standard_error", b.standard_error[i]);
@@ -365,14 +330,11 @@ inline void ModelFields(JsonArchive& a, FittedModel& model, const RunInfo& run) 
   a("parameters", fit.estimates);
   PUSHID_FIELDS(a, fit, derived, nuisance, subjects, settings);
   a.Written("values", [&] { return ValuesJson(fit.options.table, fit.parameters); });
-  PUSHID_FIELDS(a, fit, behaviour, uncertainty);
-  a.Newer("verdict", fit.verdict);
-  if (a.Has("diagnostics")) {
-    a.Group("diagnostics", [&](auto& g) {
-      Fields(g, fit.diagnostics);
-      g("advice", model.advice);
-    });
-  }
+  PUSHID_FIELDS(a, fit, behaviour, uncertainty, verdict);
+  a.Group("diagnostics", [&](auto& g) {
+    Fields(g, fit.diagnostics);
+    g("advice", model.advice);
+  });
   WarningFields(a, "warnings", fit.warnings);
   a.Group("fit",
           [&](auto& g) { PUSHID_FIELDS(g, fit, converged, cost, message, best_start, starts); });
@@ -381,15 +343,13 @@ inline void ModelFields(JsonArchive& a, FittedModel& model, const RunInfo& run) 
     PUSHID_FIELDS(g, from, manifest_hash, setting);
     g("recordings", fit.recordings);
   });
-  a("configuration", from.configuration);
-  a.Newer("changed_flags", from.changed_flags);
+  PUSHID_FIELDS(a, from, configuration, changed_flags);
   a.Group("run", [&](auto& g) {
     g.Written("date", [&] { return run.date; });
     g.Written("host", [&] { return run.host; });
     g("manifest", from.manifest);
     g.Written("model_out", [&] { return run.model_path; });
-    g("solve_seconds", fit.solve_seconds);
-    g.Newer("work", fit.work);
+    PUSHID_FIELDS(g, fit, solve_seconds, work);
     g.Written("total_seconds", [&] { return run.total_seconds; });
     g.Written("num_threads", [&] { return run.num_threads; });
   });

@@ -55,35 +55,25 @@ void CheckConsistent(const FitResult& result) {
   }
 }
 
-// A model written before there was such a parameter, which its table does not name then, has its
-// nominal value: nothing it did used it.
-ParameterSet<double> ValuesFrom(const Json& values, const Json& rows, const ParameterTable& table) {
+ParameterSet<double> ValuesFrom(const Json& values, const ParameterTable& table) {
   ParameterSet<double> set{};
   for (const ParameterSpec& spec : table.specs) {
-    const bool known = std::any_of(
-        rows.begin(), rows.end(), [&spec](const Json& row) { return row.at("name") == spec.name; });
     set[spec.id] =
-        known ? ReadAt("values/" + spec.name, [&] { return values.at(spec.name).get<double>(); })
-              : spec.nominal;
+        ReadAt("values/" + spec.name, [&] { return values.at(spec.name).get<double>(); });
   }
   return set;
 }
 
 // Throws where the options name other networks than the one that was read.
-void CheckNamedNetworks(const Json& model, const FitOptions& options) {
-  const LearnedTerms* const learned = options.model.learned.get();
-  const std::string self_force = model.at("self_force"), interaction = model.at("interaction");
-  if (SelfForceText(options.self_force, learned) != self_force) {
-    throw WrongEntry("model/self_force",
-                     "self_force is " + self_force + ", which self_network is not");
-  }
-  const auto named = ParseInteraction("interaction", interaction);
-  const PairShape pair = learned != nullptr ? learned->pair : PairShape{};
-  if (!named.ok() || named.value().pair.hidden != pair.hidden ||
-      named.value().pair.ldp != pair.ldp) {
-    throw WrongEntry("model/interaction",
-                     "interaction is " + interaction + ", which self_network is not");
-  }
+void CheckNamedNetworks(const FitOptions& options, const LearnedTerms& read) {
+  const LearnedTerms named = options.model.learned ? *options.model.learned : LearnedTerms{};
+  const auto check = [](const std::string& option, const std::string& text, bool same) {
+    if (same) return;
+    throw WrongEntry("model/" + option, option + " is " + text + ", which self_network is not");
+  };
+  check("self_force", SelfForceText(options.self_force, &named),
+        NetworkName(named.shape) == NetworkName(read.shape));
+  check("interaction", InteractionText(options.model), PairName(named.pair) == PairName(read.pair));
 }
 
 // Errors: a law that is not among `laws`. Everything else that is wrong is thrown, and the reader's
@@ -99,12 +89,13 @@ Result<FittedModel> ReadModel(const Json& json, const ForceLaws& laws, JsonArchi
     if (MaybeError error = AddNamedLaws(names, laws, &options.model, &known)) return *error;
   }
   options.table = TableFrom(reader->At("table"), known);
-  if (json.contains("self_network")) {
-    options.model.learned = LearnedFromJson(reader->At("self_network"));
-    options.hold_network = true;  // a model that was read is not fitted on
-  }
-  CheckNamedNetworks(reader->At("model"), options);
-  fit.parameters = ValuesFrom(reader->At("values"), json.at("table"), options.table);
+  std::shared_ptr<const LearnedTerms> learned;
+  if (json.contains("self_network")) learned = LearnedFromJson(reader->At("self_network"));
+  CheckNamedNetworks(options, learned ? *learned : LearnedTerms{});
+  options.model.learned = std::move(learned);
+  options.hold_network =
+      options.model.learned != nullptr;  // a model that was read is not fitted on
+  fit.parameters = ValuesFrom(reader->At("values"), options.table);
   ModelFields(*reader, model, RunInfo{});
   std::vector<Estimate>& fitted = fit.uncertainty.estimates;
   std::copy_if(fit.estimates.begin(), fit.estimates.end(), std::back_inserter(fitted),

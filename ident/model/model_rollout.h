@@ -37,8 +37,7 @@ inline constexpr double kBeyondFittedRange = 1.25;
 inline constexpr double kBeyondFittedAngle = 45.0;  // degrees
 
 // Warnings, one sentence each on the durations, impulses, heights and directions of pushes,
-// and on masses and spacings of people, that lie outside; none where the model's file, which may
-// be older, has no range.
+// and on masses and spacings of people, that lie outside; none where the model has no range.
 std::vector<std::string> ExtrapolationWarnings(const IdentifiedModel& model,
                                                const std::vector<PendulumRecording>& recordings);
 

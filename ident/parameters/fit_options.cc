@@ -75,13 +75,6 @@ void AddHiddenWeights(const std::vector<int>& hidden, int inputs, uint64_t seed,
 
 using Json = nlohmann::ordered_json;
 
-// The value of a text that a result gives; throws where it is none that a flag could give.
-template <typename T>
-T ValueOrThrow(const Result<T>& parsed) {
-  if (!parsed.ok()) throw std::runtime_error(parsed.error().message);
-  return parsed.value();
-}
-
 // The network that options ask for and that is not there, as a message; empty: none.
 std::string MissingNetwork(const FitOptions& o) {
   const auto& network = o.model.learned;
@@ -225,43 +218,21 @@ std::shared_ptr<const LearnedTerms> InitialNetwork(const NetworkShape& shape, ui
 
 PUSHID_FIELDS_OF(RodShape, kind, hidden)
 
-inline void Fields(JsonArchive& a, PairShape& pair) {
-  a("hidden", pair.hidden);
-  a.Newer("ldp", pair.ldp);
-}
+PUSHID_FIELDS_OF(PairShape, hidden, ldp)
 
 inline void Fields(JsonArchive& a, LearnedTerms& network) {
   PUSHID_FIELDS(a, network.shape, kind, hidden, embedding);
-  a.Newer("rod", network.rod);
-  a("weights", network.weights);
+  PUSHID_FIELDS(a, network, rod, weights);
   if (a.Has("interaction", network.pair.any())) a("interaction", network.pair);
 }
 
 Json ToJson(const LearnedTerms& network) { return JsonOf(network); }
 
 std::shared_ptr<const LearnedTerms> LearnedFromJson(const Json& json) {
-  for (const char* size : {"hidden", "embedding"}) {
-    if (!json.at(size).is_number_integer()) {
-      throw std::runtime_error(std::string("network: ") + size + " must be a whole number");
-    }
-  }
-  if (json.value("rod_input", false)) {
-    throw std::runtime_error("network: rod_input, an option of earlier versions, is gone");
-  }
   const auto network = std::make_shared<const LearnedTerms>(FromJson<LearnedTerms>(json));
   if (!network->any()) throw std::runtime_error("network: nothing is learned");
-  const NetworkShape& self = network->shape;
-  const NetworkShape named =
-      ValueOrThrow(ParseSelfForce("network", SelfForceText(SelfForceKind::kNone, network.get())))
-          .network;
-  const RodShape rod = ValueOrThrow(ParseRod("rod", RodName(network->rod)));
-  if (json.contains("interaction")) {
-    ValueOrThrow(ParseInteraction("interaction", PairName(network->pair)));
-  }
-  if (named.hidden != self.hidden || named.embedding != self.embedding ||
-      rod.hidden != network->rod.hidden) {
-    throw std::runtime_error("network: it has sizes that its kind has not");
-  }
+  const Result<RodShape> rod = ParseRod("rod", RodName(network->rod));
+  if (!rod.ok()) throw std::runtime_error(rod.error().message);
   if (static_cast<int>(network->weights.size()) != network->num_weights()) {
     throw std::runtime_error("network: " + LearnedName(*network) + " has " +
                              std::to_string(network->num_weights()) + " weights, not " +
@@ -296,20 +267,6 @@ bool IsLarge(const FitOptions& options) {
 PUSHID_FIELDS_OF(Prior, mean, sigma)
 
 namespace {
-
-// Options of earlier versions, and their values that did nothing or are those of now: a model that
-// has these can still be read.
-constexpr std::pair<const char*, double> kRetiredOptions[] = {{"stability_weight", 0.0},
-                                                              {"takeover_weight", 0.0},
-                                                              {"ensemble", 1.0},
-                                                              {"body_weight", 0.0},
-                                                              {"mode_margin_per_s", 0.2}};
-// Parameters of earlier versions, of terms that `interaction`, `process_noise` or the rod's law
-// would name.
-constexpr const char* kRetiredParameters[] = {"drive_gain",  "drive_torque",  "drive_time",
-                                              "noise_y_x",   "noise_theta_x", "noise_theta_y",
-                                              "noise_phi_x", "noise_phi_y",   "noise_phi_theta",
-                                              "noise_speed", "noise_push",    "rod_lift"};
 
 // One row of the table, which names other rows.
 void RowFields(JsonArchive& a, ParameterSpec& spec, const ParameterTable& table) {
@@ -368,20 +325,10 @@ Json OptionsJson(const FitOptions& options) {
   return json;
 }
 
-Json SettingsJson(const FitOptions& options) {
-  Json json = {{"model", OptionsJson(options)}, {"table", TableJson(options.table)}};
-  const std::vector<std::string> laws = LawNames(options.model);
-  if (!laws.empty()) json["force_laws"] = laws;
-  return json;
-}
-
 ParameterTable TableFrom(const Json& json, const ParameterTable& known) {
   ParameterTable table = known;
   for (const Json& row : json) {
     const std::string name = row.at("name");
-    if (std::count(std::begin(kRetiredParameters), std::end(kRetiredParameters), name) > 0) {
-      continue;
-    }
     ParameterSpec* spec = table.Find(name);
     if (spec == nullptr && row.contains("slope_of")) {
       if (table.specs.size() >= static_cast<size_t>(kNumParameters)) {
@@ -403,19 +350,9 @@ ParameterTable TableFrom(const Json& json, const ParameterTable& known) {
 
 FitOptions OptionsFrom(const Json& json) {
   FitOptions options;
-  for (const auto& [retired, unused] : kRetiredOptions) {
-    if (json.value(retired, unused) == unused) continue;
-    throw std::runtime_error(std::string(retired) +
-                             " was an option of earlier versions; models fitted with it cannot be "
-                             "read any more");
-  }
   for (const FitOptionRow& row : AllOptionRows()) {
-    if (row.json.empty()) continue;
-    const Json::json_pointer place(row.json);
-    if (row.may_be_absent && !json.contains(place)) continue;
-    row.read(json.at(place), &options);
+    if (!row.json.empty()) row.read(json.at(Json::json_pointer(row.json)), &options);
   }
-  options.model.learned = nullptr;  // its weights are not in the options
   return options;
 }
 

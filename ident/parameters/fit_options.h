@@ -13,7 +13,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -61,8 +60,9 @@ std::shared_ptr<const LearnedTerms> InitialNetwork(const NetworkShape& shape, ui
                                                    const PairShape& pair = {});
 
 nlohmann::ordered_json ToJson(const LearnedTerms& network);
-// Throws std::runtime_error that says what is wrong: an unknown kind, nothing that is learned, a
-// number of weights that does not follow from the sizes, weights that are not finite.
+// Throws std::runtime_error that says what is wrong: an unknown kind, a rod that there is not,
+// nothing that is learned, a number of weights that does not follow from the sizes, weights that
+// are not finite.
 std::shared_ptr<const LearnedTerms> LearnedFromJson(const nlohmann::ordered_json& json);
 
 // Options of a fit. Every field says what it changes and when you would change it.
@@ -109,9 +109,6 @@ struct FitOptions {
   // a log scale is about 20 %); none: estimated from the units (problem/fit_problem.cc).
   // PoolParameters gives it to the pooled parameters.
   std::optional<double> pooling_sigma;
-  // Where deviations start, by unit, one for each pooled parameter in the table's order, on the
-  // fitted scale; of units not named: zero. Set where a fit goes on from another.
-  std::map<std::string, std::vector<double>> start_deviations;
 
   // A label, between whose two values every free parameter is compared; empty: none. And
   // covariates as --covariate spells them: "Kp_theta ~ age + height; Kd_theta ~ age". PrepareFit
@@ -156,13 +153,10 @@ inline bool NeedsGradientTraining(const FitOptions& options) {
 // The options and the parameter table as JSON.
 nlohmann::ordered_json OptionsJson(const FitOptions& options);
 nlohmann::ordered_json TableJson(const ParameterTable& table);
-// The options and the table: everything that decides what a fit of given recordings finds. A user's
-// own laws are named
-// ("force_laws"), so that a reader knows what to ask for; they cannot be written.
-nlohmann::ordered_json SettingsJson(const FitOptions& options);
 
 // Throw what nlohmann's JSON throws for what is missing or of another type, and std::runtime_error
-// for unknown names. What was learned is not in them (ToJson of what is learned).
+// for unknown names. Of what was learned they have the shapes alone (ToJson of what is learned has
+// the weights and the rod's law).
 FitOptions OptionsFrom(const nlohmann::ordered_json& json);
 // known: every parameter there is; those that the JSON does not name stay.
 ParameterTable TableFrom(const nlohmann::ordered_json& json, const ParameterTable& known);

@@ -3,7 +3,6 @@
 //   void Fields(JsonArchive& a, SolveStage& stage) {
 //     PUSHID_FIELDS(a, stage, horizon, iterations, cost);  // keys are the members' names
 //     a("initial_cost", stage.first_cost, "final_cost", stage.last_cost);
-//     a.Newer("people", stage.people);  // older files have none
 //   }
 //   Json json = JsonOf(stage);   SolveStage same = FromJson<SolveStage>(json);
 //
@@ -135,7 +134,7 @@ class JsonArchive {
     }
     if constexpr (sizeof...(more) > 0) (*this)(std::forward<More>(more)...);
   }
-  // As above, of entries that older files do not have.
+  // Keys and values in turn, of entries that a file may lack.
   template <typename T, typename... More>
   void Newer(const char* key, T& value, More&&... more) {
     if (Has(key)) (*this)(key, value);
@@ -275,6 +274,9 @@ void ReadJson(const nlohmann::ordered_json& json, T* value, [[maybe_unused]] con
       throw std::runtime_error(error->ToString());
     }
   } else if constexpr (json_archive::kIsPlain<T>) {
+    if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
+      json_archive::Expect(json.is_number_integer(), "whole number", json);
+    }
     *value = json.get<T>();
   } else if constexpr (json_archive::kIsVector<T>) {
     json_archive::Expect(json.is_array(), "array", json);

@@ -148,12 +148,12 @@ Row With(Row row) {
   row.*member = value;
   return row;
 }
-constexpr auto Decided = With<&Row::preset_decides, true>;     // by the preset
-constexpr auto MayBeAbsent = With<&Row::may_be_absent, true>;  // in older files
+constexpr auto Decided = With<&Row::preset_decides, true>;  // by the preset
 constexpr auto Stored = With<&Row::is_flag, false>;  // in files: a preset or the fit decides it
 constexpr auto AtTable = With<&Row::stage, OptionStage::kTable>;
+constexpr auto RarelyChanged = With<&Row::heading, kRarelyChanged>;
 
-// An enum that other options depend on, which `set` sets with it; absent in older files.
+// An enum that other options depend on, which `set` sets with it.
 template <typename E>
 Row FieldRowWith(void (*set)(E, FitOptions*), const char* name, const char* json,
                  OptionField<E> field, const char* help) {
@@ -164,7 +164,7 @@ Row FieldRowWith(void (*set)(E, FitOptions*), const char* name, const char* json
     set(value, o);
     return std::nullopt;
   };
-  return MayBeAbsent(row);
+  return row;
 }
 
 // Rows of the model.
@@ -183,12 +183,9 @@ Row PresetRow() {
   return row;
 }
 
-// The learned terms so far; their weights are drawn once all of them are known (fit_setup.h).
+// The learned terms so far.
 LearnedTerms Learned(const FitOptions& o) {
   return o.model.learned != nullptr ? *o.model.learned : LearnedTerms{};
-}
-void SetLearned(const LearnedTerms& network, FitOptions* o) {
-  o->model.learned = network.any() ? std::make_shared<const LearnedTerms>(network) : nullptr;
 }
 
 Row StanceRow() {
@@ -209,10 +206,21 @@ Row StanceRow() {
   return row;
 }
 
-// A row of words that name what is learned too. `set` takes the name for messages and the words.
+// A row of words that name what is learned too; take: what they choose.
+template <typename Choice>
 Row LearnedRow(const char* name, const char* json, const char* help,
-               MaybeError (*set)(const std::string&, const std::string&, FitOptions*),
+               Result<Choice> (*parse)(const std::string&, const std::string&),
+               void (*take)(const Choice&, FitOptions*, LearnedTerms*),
                std::string (*text)(const FitOptions&)) {
+  const auto set = [=](const std::string& flag, const std::string& words, FitOptions* o) {
+    const Result<Choice> choice = parse(flag, words);
+    if (!choice.ok()) return MaybeError(choice.error());
+    // The weights are drawn once all of it is known (fit_setup.h).
+    LearnedTerms network = Learned(*o);
+    take(choice.value(), o, &network);
+    o->model.learned = network.any() ? std::make_shared<const LearnedTerms>(network) : nullptr;
+    return MaybeError();
+  };
   Row row = WordsRow(name, OptionStage::kModel, help, [=](const std::string& words, FitOptions* o) {
     return set("--" + std::string(name), words, o);
   });
@@ -227,35 +235,6 @@ Row LearnedRow(const char* name, const char* json, const char* help,
   return row;
 }
 
-MaybeError SetSelfForce(const std::string& flag, const std::string& text, FitOptions* o) {
-  const Result<SelfForceChoice> choice = ParseSelfForce(flag, text);
-  if (!choice.ok()) return choice.error();
-  o->self_force = choice.value().kind;
-  LearnedTerms network = Learned(*o);
-  network.shape = choice.value().network;
-  SetLearned(network, o);
-  return std::nullopt;
-}
-
-MaybeError SetRod(const std::string& flag, const std::string& text, FitOptions* o) {
-  const Result<RodShape> rod = ParseRod(flag, text);
-  if (!rod.ok()) return rod.error();
-  LearnedTerms network = Learned(*o);
-  network.rod = rod.value();
-  SetLearned(network, o);
-  return std::nullopt;
-}
-
-MaybeError SetInteraction(const std::string& flag, const std::string& text, FitOptions* o) {
-  const Result<InteractionChoice> choice = ParseInteraction(flag, text);
-  if (!choice.ok()) return choice.error();
-  o->model.interaction = choice.value().terms;
-  LearnedTerms network = Learned(*o);
-  network.pair = choice.value().pair;
-  SetLearned(network, o);
-  return std::nullopt;
-}
-
 constexpr const char* kSelfForceHelp =
     "additional self force: none, linear (cross terms, quadratic), a network by kind and hidden "
     "size (mlp:4, or LDP's ldp:256:32 with its embedding), or linear and a network, "
@@ -266,20 +245,26 @@ std::vector<Row> ModelRows() {
   return {
       PresetRow(),
       StanceRow(),
-      Decided(LearnedRow(
-          "self_force", "/self_force", kSelfForceHelp, SetSelfForce,
+      Decided(LearnedRow<SelfForceChoice>(
+          "self_force", "/self_force", kSelfForceHelp, ParseSelfForce,
+          [](const SelfForceChoice& choice, O* o, LearnedTerms* network) {
+            o->self_force = choice.kind;
+            network->shape = choice.network;
+          },
           [](const FitOptions& o) { return SelfForceText(o.self_force, o.model.learned.get()); })),
-      LearnedRow("rod", "",
-                 "the rod's length: constant, or a state that LDP's learned law changes, "
-                 "ldp:128-128 (hidden sizes)",
-                 SetRod, [](const FitOptions& o) { return RodName(Learned(o).rod); }),
+      LearnedRow<RodShape>(
+          "rod", "",
+          "the rod's length: constant, or a state that LDP's learned law changes, ldp:128-128 "
+          "(hidden sizes)",
+          ParseRod, [](const RodShape& rod, O*, LearnedTerms* network) { network->rod = rod; },
+          [](const FitOptions& o) { return RodName(Learned(o).rod); }),
       Decided(FieldRow<Posture>("posture", "/posture", &ModelOptions::posture,
                                 "balance error measured from: upright or initial")),
-      MayBeAbsent(Decided(FieldRow<Directions>(
+      Decided(FieldRow<Directions>(
           "directions", "/directions", &ModelOptions::directions,
           "isotropic (people answer alike in all directions; fitted along each push), body (along "
           "what people face, sideways parameters free where forward ones are) or axes (those of "
-          "the file; sideways parameters as the preset has them)"))),
+          "the file; sideways parameters as the preset has them)")),
       Decided(FieldRow<GainScaling>(
           "gain_scaling", "/gain_scaling", &ModelOptions::gain_scaling,
           "gains of other bodies: none, mass, or body (mass and rod length)")),
@@ -300,15 +285,20 @@ std::vector<Row> ModelRows() {
           "com_height, gyration_radius and push_gain, of robots and rigs: fixed or fitted)"),
       Stored(FieldRow<CartDerivative>("cart_derivative", "/cart_derivative",
                                       &ModelOptions::cart_derivative, "")),
-      Decided(LearnedRow(
+      Decided(LearnedRow<InteractionChoice>(
           "interaction", "/interaction",
           "interaction between people: none, or some of these, comma-separated: contact (smooth "
           "and mutual: spring,damping), ldp_published (LDP's equations 10 and 11 and its table of "
           "signs), network:4 (learned beside contact, by hidden sizes), ldp_network:512-512 "
           "(LDP's, learned of every neighbour in range)",
-          SetInteraction, [](const FitOptions& o) { return InteractionText(o.model); })),
-      Stored(MayBeAbsent(FieldRow<ProcessNoise>("process_noise", "/process_noise",
-                                                &ModelOptions::process_noise, ""))),
+          ParseInteraction,
+          [](const InteractionChoice& choice, O* o, LearnedTerms* network) {
+            o->model.interaction = choice.terms;
+            network->pair = choice.pair;
+          },
+          [](const FitOptions& o) { return InteractionText(o.model); })),
+      Stored(FieldRow<ProcessNoise>("process_noise", "/process_noise", &ModelOptions::process_noise,
+                                    "")),
       FieldRowWith<Likelihood>(
           SetLikelihood, "likelihood", "/likelihood", &O::likelihood,
           "what a fit maximizes: trajectory (whole rollouts), or, under process noise, transition "
@@ -370,23 +360,21 @@ std::vector<Row> WeightRows() {
                        kPositive, "")),
       Stored(NumberRow("sigma_angle", "/sigmas/angle_rad", &ResidualSigmas::angle, kPositive, "")),
       Stored(NumberRow("sigma_rate", "/sigmas/rate_rad_s", &ResidualSigmas::rate, kPositive, "")),
-      With<&Row::heading, kRarelyChanged>(MayBeAbsent(NumberRow(
+      RarelyChanged(NumberRow(
           "marker_noise", "/sigmas/marker_noise_m", &O::marker_noise, kPositive,
-          "standard deviation of a marker's position, m: lower limit of estimated sigmas"))),
+          "standard deviation of a marker's position, m: lower limit of estimated sigmas")),
       Stored(NumberRow("robust", "/sigmas/robust", &ResidualSigmas::robust, kNotNegative, "")),
-      Stored(
-          MayBeAbsent(BoolRow("estimate_weights", "/estimate_weights", &O::estimate_weights, ""))),
-      Stored(MayBeAbsent(NumberRow("effective_weight", "/effective_weight", &O::effective_weight,
-                                   {0.0, 1e6, false, "must be a number from 0 to 1e6"}, ""))),
+      Stored(BoolRow("estimate_weights", "/estimate_weights", &O::estimate_weights, "")),
+      Stored(NumberRow("effective_weight", "/effective_weight", &O::effective_weight,
+                       {0.0, 1e6, false, "must be a number from 0 to 1e6"}, "")),
       Decided(
           NumberRow("settling_weight", "/settling_weight", &O::settling_weight, kNotNegative,
                     "weight of the settling constraint (pushed people must settle in the settling "
                     "simulations); 0: off")),
       Decided(PoolByRow()),
       PoolingSigmaRow(),
-      MayBeAbsent(NumberRow(
-          "network_prior", "/network_prior", &O::network_prior, kNotNegative,
-          "standard deviation of the prior that ties a network's weights to zero; 0: none")),
+      NumberRow("network_prior", "/network_prior", &O::network_prior, kNotNegative,
+                "standard deviation of the prior that ties a network's weights to zero; 0: none"),
   };
 }
 
@@ -445,12 +433,12 @@ Row EditRow(const char* name, std::string TableEdits::*list, const char* help) {
 
 std::vector<Row> TableRows() {
   return {
-      MayBeAbsent(AtTable(FieldRow<std::string>(
+      AtTable(FieldRow<std::string>(
           "contrast", "/contrast", &FitOptions::contrast,
           "a label with two values (patients and controls, eyes open and closed, before and "
           "after), of a recording or of a person in the manifest's subjects: the difference of "
-          "every free parameter between them is fitted"))),
-      MayBeAbsent(AtTable(CovariateRow())),
+          "every free parameter between them is fitted")),
+      AtTable(CovariateRow()),
       EditRow("free", &TableEdits::free, "parameters fitted: name or name=start, comma-separated"),
       EditRow("fix", &TableEdits::fix,
               "parameters held fixed: name or name=value, comma-separated"),

@@ -39,8 +39,7 @@ struct FitOptionRow {
   // The rule that the value violates, "must be positive"; empty: none. Null: any value will do.
   std::function<std::string(const FitOptions&)> violation;
 
-  std::string json;            // where it stands in a model's "model"; empty: nowhere
-  bool may_be_absent = false;  // in files older than the option
+  std::string json;  // where it stands in a model's "model"; empty: nowhere
   std::function<nlohmann::ordered_json(const FitOptions&)> write;
   // Throws what nlohmann's JSON throws, and std::runtime_error for unknown names.
   std::function<void(const nlohmann::ordered_json&, FitOptions*)> read;

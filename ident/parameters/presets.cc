@@ -175,14 +175,14 @@ void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
   for (int id = kFirstLinear; id <= kLastLinear; ++id) {
     ParameterSpec& spec = table->specs[id];
     spec.free = true;
-    // As weak as the preset's own priors: without them these terms drive the person instead.
+    // Priors as weak as the preset's own: without them these terms drive the person instead.
     if (!spec.prior) spec.prior = Prior{spec.nominal, spec.scale};
   }
 }
 
-// With weak priors as wide as their centres. The contact's height stays fixed: heights from the
-// ankles to the chest fit the group recordings alike. So do the parameters of LDP's discrete form:
-// it has no derivatives.
+// Frees parameters with weak priors as wide as their centres. The contact's height stays fixed:
+// heights from the ankles to the chest fit the group recordings alike. So do the parameters of
+// LDP's discrete form: it has no derivatives.
 void FreeByTerm(const ModelOptions& model, ParameterTable* table) {
   for (ParameterSpec& spec : table->specs) {
     if (!FreedByItsTerm(spec.id, model)) continue;

@@ -37,7 +37,7 @@ inline bool IsOneMachine(const ModelOptions& model) {
 // Complete and ready for PrepareFit. Errors: no such preset (auto is none before PresetFor).
 Result<FitOptions> MakePreset(const std::string& name);
 
-// As MakePreset before FreeTerms and PoolParameters: only the preset's own parameters are free.
+// The preset before FreeTerms and PoolParameters: only its own parameters are free.
 Result<FitOptions> StartPreset(const std::string& name);
 
 // Frees the parameters of the terms that the options have, with weak priors as wide as their
@@ -76,7 +76,7 @@ std::string MemoryOf(const ModelOptions& model);
 // Sets where a body's mass is. By the table, it starts as a point at the hip, with nothing free.
 void SetBody(BodyModel body, FitOptions* options);
 
-// With a delay its parameters are free, with weak priors.
+// Sets the delay; where there is one, its parameters are free, with weak priors.
 void SetDelay(Delay delay, FitOptions* options);
 
 inline constexpr double kLdpRate = 60.0;  // Hz: LDP counts Kd per frame

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 #include <sstream>
 
@@ -70,10 +69,6 @@ StepTiming TimingOf(const PendulumRecording& recording, const Prediction& predic
   return timing;
 }
 
-// The factor on pushes, and the frames watched past the recording's end, of FallsWhenPushedHarder.
-constexpr double kStrongerPush = 1.4;
-constexpr int kFramesPastTheEnd = 40;
-
 RecordingScore FailedScore(const PendulumRecording& recording, const std::string& failure,
                            int observed) {
   RecordingScore score;
@@ -91,7 +86,7 @@ RecordingScore ScoreOf(const IdentifiedModel& model, const PendulumRecording& re
   if (!prediction.status.ok)
     return FailedScore(recording, OutsideText(prediction.status), observed);
   RecordingScore score = ScoreHip(recording, prediction.hip, observed);
-  AddContactFigures(model, recording, prediction, &score.propagation);
+  AddContactFigures(model, prediction, &score.propagation);
   score.fell = AnybodyFalls(prediction);
   score.steps = StepPredictions(recording, prediction);
   return score;
@@ -114,27 +109,6 @@ void AddBands(const PendulumRecording& recording, int from, const Inside& inside
     }
   }
   if (frames > 0.0) score->value.segment<kCrps + 1 - kInside90>(kInside90) /= frames;
-}
-
-MeanScore Mean(const ScoreList& scores, bool by_frames, bool shares_first) {
-  MeanScore mean;
-  mean.recordings = static_cast<int>(scores.size());
-  if (scores.empty()) return mean;
-  const auto weight = [by_frames](const Score* s) {
-    return by_frames ? s->frames - s->first_frame : 1.0;
-  };
-  double total = 0.0;
-  for (const Score* s : scores) total += weight(s);
-  const ScoreClusters clusters = ClustersOf(scores);
-  mean.clustered_by = clusters.by;
-  mean.clusters = clusters.count;
-  const double first = shares_first ? total : 1.0, last = shares_first ? 1.0 : total;
-  for (const Score* s : scores) mean.value += weight(s) / first * s->value;
-  mean.value /= last;
-  std::vector<Metrics> deviations;
-  for (const Score* s : scores) deviations.push_back(weight(s) / total * (s->value - mean.value));
-  mean.error = clusters.ErrorOfMean(deviations);
-  return mean;
 }
 
 ScoreList Scored(const ScoreList& scores) {
@@ -260,7 +234,6 @@ RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& pred
     for (int i = 0; i < 3; ++i) score.value[kFirstThird + i] += thirds[i].Mean() / people;
   }
   score.propagation = ScorePropagation(recording, predicted);
-  if (people > 1) score.predicted = predicted;
   return score;
 }
 
@@ -316,18 +289,8 @@ void ScoreDraws(const PendulumRecording& recording, const DrawnPaths& draws,
 }
 
 RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording,
-                          int observed, ForecastUse use, const Draws& draws) {
-  if (observed == 0) {
-    RecordingScore score = ScoreOf(model, recording, Predict(model, recording), 0);
-    if (draws.count == 0 || !score.failure.empty()) return score;
-    const Result<Futures> futures = DrawFutures(model, recording, draws.count, draws.seed);
-    if (!futures.ok()) return FailedScore(recording, futures.error().message, 0);
-    if (futures.value().paths.size() < 2) {
-      return FailedScore(recording, "fewer than two drawn futures stay in the model's domain", 0);
-    }
-    ScoreDraws(recording, futures.value().paths, &score);
-    return score;
-  }
+                          int observed, ForecastUse use) {
+  if (observed == 0) return ScoreOf(model, recording, Predict(model, recording), 0);
   Result<OnlinePredictor> made =
       OnlinePredictor::Make(model, recording, recording.num_frames(), use);
   if (!made.ok()) return FailedScore(recording, made.error().message, observed);
@@ -355,13 +318,6 @@ RecordingScore ScoreReanchored(const IdentifiedModel& model, const PendulumRecor
   return ScoreOf(model, recording, prediction, observed);
 }
 
-bool FallsWhenPushedHarder(const IdentifiedModel& model, const PendulumRecording& recording) {
-  PendulumRecording harder = recording;
-  harder.scene = ScalePushes(recording.scene, kStrongerPush);
-  const Prediction prediction = Predict(model, harder, recording.num_frames() + kFramesPastTheEnd);
-  return !prediction.status.ok || AnybodyFalls(prediction);
-}
-
 const ScoreSummary& Evaluation::Baseline(const std::string& key) const {
   return std::find_if(baselines.begin(), baselines.end(),
                       [&key](const BaselineSummary& baseline) { return baseline.key == key; })
@@ -369,19 +325,16 @@ const ScoreSummary& Evaluation::Baseline(const std::string& key) const {
 }
 
 Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings,
-                    int observed, const LabelKeys& group_by, ForecastUse use, const Draws& draws) {
+                    int observed, const LabelKeys& group_by, ForecastUse use) {
   const auto summary = [&](bool bands, const auto& score) {
     std::vector<RecordingScore> scores;
     for (const PendulumRecording& recording : recordings) scores.push_back(score(recording));
     return Summarize(recordings, std::move(scores), observed, bands, group_by);
   };
   Evaluation evaluation;
-  evaluation.model =
-      summary(observed > 0 || draws.count > 0, [&](const PendulumRecording& recording) {
-        const int index = static_cast<int>(&recording - recordings.data());
-        return ScoreModel(model, recording, observed, use,
-                          {draws.count, SeedOfRecording(draws.seed, index)});
-      });
+  evaluation.model = summary(observed > 0, [&](const PendulumRecording& recording) {
+    return ScoreModel(model, recording, observed, use);
+  });
   for (const pushid::Baseline& baseline : kBaselines) {
     if (baseline.needs_frames && observed == 0) continue;
     evaluation.baselines.push_back(
@@ -396,32 +349,6 @@ Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumReco
          })});
   }
   return evaluation;
-}
-
-Metrics ScoreClusters::ErrorOfMean(const std::vector<Metrics>& deviations) const {
-  Metrics squares = Metrics::Zero();
-  if (count < 2) return squares;
-  std::vector<Metrics> sums(count, Metrics::Zero());
-  for (size_t i = 0; i < deviations.size(); ++i) sums[of[i]] += deviations[i];
-  for (const Metrics& sum : sums) squares += sum * sum;
-  return (squares * double(count) / (count - 1.0)).sqrt();
-}
-
-ScoreClusters ClustersOf(const ScoreList& scores) {
-  ScoreClusters clusters;
-  std::map<std::string, int> people;
-  for (const Score* score : scores) {
-    clusters.of.push_back(
-        people.emplace(score->pushed, static_cast<int>(people.size())).first->second);
-  }
-  clusters.count = static_cast<int>(people.size());
-  if (clusters.count > 1 && people.size() < scores.size()) {
-    clusters.by = ClusterBy::kSubject;
-    return clusters;
-  }
-  clusters.count = static_cast<int>(scores.size());
-  std::iota(clusters.of.begin(), clusters.of.end(), 0);
-  return clusters;
 }
 
 std::string ClustersText(ClusterBy by, int count) {
@@ -461,36 +388,50 @@ std::string WithoutLabelText(const WithoutLabel& counts) {
   return text;
 }
 
-std::vector<std::string> GroupNames(const std::vector<PendulumRecording>& recordings,
-                                    const std::string& key) {
-  std::vector<std::string> names;
-  for (const PendulumRecording& r : recordings) {
-    names.push_back(key == kSubjectUnit ? r.subject_ids[r.pushed_person] : r.labels.Of(key));
+MeanScore MeanOfScores(const ScoreList& scores) {
+  MeanScore mean;
+  mean.recordings = mean.clusters = static_cast<int>(scores.size());
+  if (scores.empty()) return mean;
+  for (const Score* score : scores) mean.value += score->value;
+  mean.value /= mean.recordings;
+  // Sums of deviations: of people where some were pushed more than once, else of recordings.
+  std::map<std::string, Metrics> people;
+  Metrics squares = Metrics::Zero(), squares_of_people = Metrics::Zero();
+  for (const Score* score : scores) {
+    const Metrics deviation = (score->value - mean.value) / mean.recordings;
+    squares += deviation * deviation;
+    people.emplace(score->pushed, Metrics::Zero()).first->second += deviation;
   }
-  return names;
-}
-
-WithoutLabel CountWithoutLabel(const std::vector<PendulumRecording>& recordings,
-                               const ScoreList& scores, const LabelKeys& keys) {
-  WithoutLabel counts;
-  for (const std::string& key : keys) {
-    const std::vector<std::string> names = GroupNames(recordings, key);
-    int with = 0, without = 0;
-    for (size_t i = 0; i < scores.size(); ++i) {
-      if (scores[i]->failure.empty()) ++(names[i].empty() ? without : with);
-    }
-    if (with > 0 && without > 0) counts[key] = without;
+  for (const auto& [person, sum] : people) squares_of_people += sum * sum;
+  if (people.size() > 1 && people.size() < scores.size()) {
+    mean.clustered_by = ClusterBy::kSubject;
+    mean.clusters = static_cast<int>(people.size());
+    squares = squares_of_people;
   }
-  return counts;
+  if (mean.clusters > 1) mean.error = (squares * mean.clusters / (mean.clusters - 1.0)).sqrt();
+  return mean;
 }
 
 ScoreMeans MeansOf(const std::vector<PendulumRecording>& recordings, const ScoreList& scores,
-                   const LabelKeys& group_by, bool shares_first) {
-  const ScoreList all = Scored(scores);
-  return {Mean(all, false, shares_first), Mean(all, true, shares_first),
-          GroupScores(recordings, scores, group_by,
-                      [=](const ScoreList& group) { return Mean(group, false, shares_first); }),
-          CountWithoutLabel(recordings, scores, group_by)};
+                   const LabelKeys& group_by) {
+  ScoreMeans means;
+  means.mean = MeanOfScores(Scored(scores));
+  for (const std::string& key : group_by) {
+    std::map<std::string, ScoreList> groups;
+    int without = 0;
+    for (size_t i = 0; i < scores.size(); ++i) {
+      if (!scores[i]->failure.empty()) continue;
+      const PendulumRecording& r = recordings[i];
+      const std::string name =
+          key == kSubjectUnit ? r.subject_ids[r.pushed_person] : r.labels.Of(key);
+      if (name.empty()) ++without;
+      if (!name.empty()) groups[name].push_back(scores[i]);
+    }
+    if (without > 0 && !groups.empty()) means.without_label[key] = without;
+    auto& of_key = means.by[key];
+    for (const auto& [name, group] : groups) of_key[name] = MeanOfScores(group);
+  }
+  return means;
 }
 
 ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
@@ -498,32 +439,20 @@ ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
                        const LabelKeys& group_by) {
   ScoreList all;
   std::vector<StepPrediction> steps;
+  std::vector<const PropagationScore*> propagation;
   for (size_t i = 0; i < recordings.size(); ++i) {
     scores[i].pushed = recordings[i].subject_ids[recordings[i].pushed_person];
     all.push_back(&scores[i]);
     if (!scores[i].failure.empty()) continue;
     steps.insert(steps.end(), scores[i].steps.begin(), scores[i].steps.end());
+    propagation.push_back(&scores[i].propagation);
   }
-  const auto propagation = [](const ScoreList& group) {
-    std::vector<const PropagationScore*> of_group;
-    for (const Score* score : group) {
-      of_group.push_back(&static_cast<const RecordingScore*>(score)->propagation);
-    }
-    return SummarizePropagation(of_group);
-  };
   ScoreSummary summary;
-  static_cast<ScoreMeans&>(summary) = MeansOf(recordings, all, group_by, false);
+  static_cast<ScoreMeans&>(summary) = MeansOf(recordings, all, group_by);
   summary.observed = observed;
   summary.bands = bands;
   summary.steps = ScoreSteps(steps);
-  summary.propagation = propagation(Scored(all));
-  const auto by_setting = GroupScores(recordings, all, {kSettingLabel}, propagation);
-  for (const auto& [name, of_setting] : by_setting.at(kSettingLabel)) {
-    if (of_setting.recordings > 0) summary.propagation_by_setting[name] = of_setting;
-  }
-  if (!summary.propagation_by_setting.empty()) {
-    summary.without_label.merge(CountWithoutLabel(recordings, all, {kSettingLabel}));
-  }
+  summary.propagation = SummarizePropagation(propagation);
   summary.recordings = std::move(scores);
   return summary;
 }

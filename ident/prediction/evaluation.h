@@ -1,12 +1,12 @@
 // ident: prediction errors of a model and of the baselines.
 //
 // hipADE: mean over frames 1 .. T-1 and people of |hip predicted - hip measured|, in m; hipFDE: of
-// the last frame. Means over recordings and, beside them, weighted by frames. Baselines:
-// kBaselines, and where first frames were seen the model started anew there.
+// the last frame. Means are over recordings. Baselines: kBaselines, and where first frames were
+// seen the model started anew there.
 //
 // Where the first k frames were seen (online_predictor.h), frame 0 among them, they are in every
 // prediction as they were. after_hipADE is the mean over the frames behind them, and the baselines
-// go on from frame k - 1. Of predictions that are distributions (there, and of drawn paths)
+// go on from frame k - 1. Of predictions that are distributions (there, and bands of futures.h)
 // inside90_x and inside90_y are the share of the predicted frames in which the pushed person's hip
 // lies in the 90 % band, crps the mean of the CRPS of x and y: the lower, the better.
 #pragma once
@@ -102,18 +102,9 @@ std::string MetricsText(const MetricList& metrics, const Metrics& values, int di
 // A person answers every push with the same body and habits, and a model misses one person's
 // recordings alike. So where people were pushed more than once the clusters of a mean's error are
 // the pushed people, otherwise the recordings; within one person they are recordings, which says
-// nothing about anybody else. With G clusters and scores of weights w that sum to 1,
-//   error = sqrt(G / (G - 1) * sum over clusters of (sum of w (score - mean))^2)
+// nothing about anybody else. With G clusters and n scores,
+//   error = sqrt(G / (G - 1) * sum over clusters of (sum of (score - mean) / n)^2)
 // with Student's t of G - 1 degrees of freedom (CR1; covariance.h has the fit's).
-
-struct ScoreClusters {
-  ClusterBy by = ClusterBy::kRecording;  // or kSubject
-  int count = 0;
-  std::vector<int> of;  // cluster of each score
-
-  // deviations: w (score - mean) of each. 0 of a single cluster.
-  Metrics ErrorOfMean(const std::vector<Metrics>& deviations) const;
-};
 
 // "4 people", "32 recordings"
 std::string ClustersText(ClusterBy by, int count);
@@ -127,10 +118,6 @@ std::string LabelKeysText(const LabelKeys& keys);
 
 // Error: a key that is not `subject` and that no recording has; not of the usual ones.
 MaybeError CheckGroups(const std::vector<PendulumRecording>& recordings, const LabelKeys& keys);
-
-// The name of each recording's group by a key; empty where it has no such label.
-std::vector<std::string> GroupNames(const std::vector<PendulumRecording>& recordings,
-                                    const std::string& key);
 
 // Predictions that ask no model.
 
@@ -164,70 +151,47 @@ struct Score {
   std::string pushed = {};  // id of that person; empty: errors of means are clustered by recordings
 };
 using ScoreList = std::vector<const Score*>;
-ScoreClusters ClustersOf(const ScoreList& scores);
 
 struct RecordingScore : Score {
   bool fell = false;                  // a person leaned beyond 1.0 rad
-  bool fell_harder = false;           // FallsWhenPushedHarder, where it was asked
   PropagationScore propagation = {};  // empty for a single person and after a failure
   // One value per person; empty where the model has no step probability, and after a failure.
   std::vector<StepPrediction> steps = {};
-  HipPaths predicted = {};  // of more than one person; groups are judged together
 };
 
 struct MeanScore {
   int recordings = 0;
   Metrics value = Metrics::Zero(), error = Metrics::Zero();  // mean and its standard error
-  ClusterBy clustered_by = ClusterBy::kRecording;
+  ClusterBy clustered_by = ClusterBy::kRecording;            // or kSubject
   int clusters = 0;
 };
+MeanScore MeanOfScores(const ScoreList& scores);
 
-// A value for each group: [key][text of the label], keys in the order of the list.
-template <typename T>
-using ByLabel = nlohmann::ordered_map<std::string, std::map<std::string, T>>;
+// A mean for each group: [key][text of the label], keys in the order of the list.
+using MeansByLabel = nlohmann::ordered_map<std::string, std::map<std::string, MeanScore>>;
 
 // The number of scores that lack the label of a key, by key, where others have it. Scores that
 // failed do not count.
 using WithoutLabel = std::map<std::string, int>;
-WithoutLabel CountWithoutLabel(const std::vector<PendulumRecording>& recordings,
-                               const ScoreList& scores, const LabelKeys& keys);
 // A line for each key: "2 recordings have no setting: they are in no group by setting"
 std::string WithoutLabelText(const WithoutLabel& counts);
 
-// of: the value of a list of scores. Scores that failed are in no group.
-template <typename Of>
-auto GroupScores(const std::vector<PendulumRecording>& recordings, const ScoreList& scores,
-                 const LabelKeys& keys, Of of) {
-  ByLabel<decltype(of(ScoreList()))> by;
-  for (const std::string& key : keys) {
-    const std::vector<std::string> names = GroupNames(recordings, key);
-    std::map<std::string, ScoreList> groups;
-    for (size_t i = 0; i < scores.size(); ++i) {
-      if (scores[i]->failure.empty() && !names[i].empty()) groups[names[i]].push_back(scores[i]);
-    }
-    auto& of_key = by[key];
-    for (const auto& [name, group] : groups) of_key[name] = of(group);
-  }
-  return by;
-}
-
+// Scores that failed are in no mean and in no group.
 struct ScoreMeans {
-  MeanScore mean, frame_weighted;
-  ByLabel<MeanScore> by;
+  MeanScore mean;
+  MeansByLabel by;
   WithoutLabel without_label;  // in no group of `by`
 };
-// scores in the order of recordings. shares_first: each score is multiplied by its share of the
-// weight and added, and not the sum divided in the end; files differ by it in the last digit.
+// scores in the order of recordings.
 ScoreMeans MeansOf(const std::vector<PendulumRecording>& recordings, const ScoreList& scores,
-                   const LabelKeys& group_by, bool shares_first);
+                   const LabelKeys& group_by);
 
 struct ScoreSummary : ScoreMeans {
   std::vector<RecordingScore> recordings;
   PropagationSummary propagation;  // over recordings of more than one person
-  std::map<std::string, PropagationSummary> propagation_by_setting;  // none for single people
-  StepScore steps;     // unknown where the model says nothing of them
-  int observed = 0;    // frames that were seen, where it was asked for
-  bool bands = false;  // true where bands were scored
+  StepScore steps;                 // unknown where the model says nothing of them
+  int observed = 0;                // frames that were seen, where it was asked for
+  bool bands = false;              // true where bands were scored
 };
 
 RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& predicted,
@@ -246,22 +210,12 @@ std::vector<StepPrediction> StepPredictions(const PendulumRecording& recording,
 // Bands of drawn paths.
 void ScoreDraws(const PendulumRecording& recording, const DrawnPaths& draws, RecordingScore* score);
 
-// Number of futures drawn from frame 0 (futures.h; 0: no bands), and their seed.
-struct Draws {
-  int count = 0;
-  uint64_t seed = 1;
-};
-
-// Scores in the order of recordings; a failed rollout is a named failure, and so are fewer than two
-// futures. observed: frames seen first, 0: none; the model must say how recordings differ.
+// A failed rollout is a named failure. observed: frames seen first, 0: none; the model must have
+// learned forecasts.
 RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording,
-                          int observed = 0, ForecastUse use = ForecastUse::kBoth,
-                          const Draws& draws = {});
+                          int observed = 0, ForecastUse use = ForecastUse::kBoth);
 RecordingScore ScoreReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
                                int observed);
-
-// True where a person falls with every push times 1.4, until 40 frames past the recording's end.
-bool FallsWhenPushedHarder(const IdentifiedModel& model, const PendulumRecording& recording);
 
 ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
                        std::vector<RecordingScore> scores, int observed = 0, bool bands = false,
@@ -281,6 +235,6 @@ struct Evaluation {
 };
 Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings,
                     int observed = 0, const LabelKeys& group_by = UsualGroups(),
-                    ForecastUse use = ForecastUse::kBoth, const Draws& draws = {});
+                    ForecastUse use = ForecastUse::kBoth);
 
 }  // namespace pushid

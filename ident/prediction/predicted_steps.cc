@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "datasets/files/names.h"
@@ -75,20 +74,6 @@ FootprintsOfPeople PredictedFootprints(const PendulumRecording& recording,
                                 prediction.path.num_frames()));
   }
   return people;
-}
-
-std::vector<Eigen::Vector2d> CapturePath(const std::vector<Vector3<double>>& hip, double rod_length,
-                                         double dt) {
-  const int last = static_cast<int>(hip.size()) - 1;
-  const int wing = std::max(1, static_cast<int>(std::lround(0.05 / dt)));
-  const double omega = std::sqrt(kGravity / rod_length);
-  std::vector<Eigen::Vector2d> path;
-  for (int t = 0; t <= last; ++t) {
-    const int from = std::max(0, t - wing), to = std::min(last, t + wing);
-    const Vector3<double> way = hip[to] - hip[from];
-    path.emplace_back((hip[t] + way / (omega * std::max(1, to - from) * dt)).head<2>());
-  }
-  return path;
 }
 
 std::string PredictedStepsText(const PendulumRecording& recording, const Prediction& prediction) {
@@ -202,30 +187,6 @@ LiftOffError LiftOffErrorOf(const std::vector<StepPrediction>& predictions) {
   return result;
 }
 
-using Json = nlohmann::ordered_json;
-
-struct StepSummary {
-  int people = 0, stepping = 0;
-  // Times of first lift-offs, s, and lengths of first steps, m, of those who step. A step that the
-  // recording cuts off has no length yet.
-  std::vector<double> lift_off, length;
-};
-
-StepSummary StepSummaryOf(const std::vector<PendulumRecording>& recordings) {
-  StepSummary summary;
-  for (const PendulumRecording& recording : recordings) {
-    for (const PersonSteps& person : recording.steps) {
-      ++summary.people;
-      const FootStep* first = person.First();
-      if (first == nullptr) continue;
-      ++summary.stepping;
-      summary.lift_off.push_back(first->lift_off * recording.scene.dt);
-      if (first->finished) summary.length.push_back(first->Length());
-    }
-  }
-  return summary;
-}
-
 constexpr int kFewForAuc = 3;
 
 }  // namespace
@@ -247,57 +208,6 @@ StepScore ScoreSteps(const std::vector<StepPrediction>& predictions) {
   score.fifths = Fifths(predictions);
   score.lift_off = LiftOffErrorOf(predictions);
   return score;
-}
-
-std::string StepsReport(const std::vector<PendulumRecording>& recordings, bool per_recording) {
-  std::string text;
-  if (per_recording) {
-    TextTable table({"recording", "person", "steps"});
-    for (const PendulumRecording& recording : recordings) {
-      for (size_t n = 0; n < recording.steps.size(); ++n) {
-        table.Add({n == 0 ? recording.id : "", recording.subject_ids[n],
-                   StepsText(recording.steps[n], 1.0 / recording.scene.dt)});
-      }
-    }
-    text += table.ToString() + "\n";
-  }
-  const StepSummary summary = StepSummaryOf(recordings);
-  text += "steps: " + std::to_string(summary.stepping) + " of " +
-          CountText(summary.people, "person steps", "people step");
-  if (summary.stepping > 0) {
-    text += "; medians: first lift-off after " + Rounded(Median(summary.lift_off), 2) + " s";
-  }
-  if (!summary.length.empty()) {
-    text += ", first step " + Rounded(Median(summary.length), 2) + " m";
-  }
-  return text + "\n";
-}
-
-void AddStepsJson(const std::vector<PendulumRecording>& recordings, Json* json) {
-  for (size_t i = 0; i < recordings.size(); ++i) {
-    Json people = Json::array();
-    for (const PersonSteps& person : recordings[i].steps) {
-      Json steps = Json::array();
-      for (const FootStep& step : person.steps) {
-        const double dt = recordings[i].scene.dt;
-        steps.push_back({{"foot", NameOf(step.foot)},
-                         {"lift_off_s", step.lift_off * dt},
-                         {"landing_s", step.finished ? Json(step.landing * dt) : Json(nullptr)},
-                         {"length_m", step.Length()},
-                         {"direction_deg", step.Direction() * 180.0 / M_PI}});
-      }
-      people.push_back(std::move(steps));
-    }
-    json->at("recordings").at(i)["steps"] = std::move(people);
-  }
-  const StepSummary summary = StepSummaryOf(recordings);
-  const auto median = [](const std::vector<double>& values) {
-    return values.empty() ? Json(nullptr) : Json(Median(values));
-  };
-  (*json)["steps"] = {{"people", summary.people},
-                      {"people_who_step", summary.stepping},
-                      {"first_lift_off_median_s", median(summary.lift_off)},
-                      {"first_length_median_m", median(summary.length)}};
 }
 
 std::string StepProbabilityText(const StepProbability& p) {

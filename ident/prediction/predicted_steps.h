@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -37,11 +36,6 @@ using FootprintsOfPeople = std::vector<std::vector<Footprint>>;
 FootprintsOfPeople RecordedFootprints(const PendulumRecording& recording);
 FootprintsOfPeople PredictedFootprints(const PendulumRecording& recording,
                                        const Prediction& prediction);
-
-// The capture point hip + v / omega of a hip's path, m: omega as models/stance.h has it, v over
-// +-50 ms, so that 2 mm of noise stays below 1 cm.
-std::vector<Eigen::Vector2d> CapturePath(const std::vector<Vector3<double>>& hip, double rod_length,
-                                         double dt);
 
 // A line per person: "S01: P(step) 0.93, steps left 0.42-0.78 s 0.31 m forwards"; empty where the
 // model says nothing of steps.
@@ -99,20 +93,6 @@ struct StepScore {
 };
 
 StepScore ScoreSteps(const std::vector<StepPrediction>& predictions);
-
-// The steps that people took in recordings, in words and as JSON, beside how well a model
-// predicts them.
-
-// "steps: 217 of 255 people step; medians: first lift-off after 0.5 s, first step 0.41 m"; before
-// it, if asked, a line for each person.
-std::string StepsReport(const std::vector<PendulumRecording>& recordings, bool per_recording);
-
-// Adds to each entry of `recordings` in an evaluation's JSON (same order):
-//   steps: one list a person: [{foot, lift_off_s, landing_s, length_m, direction_deg}, ...]
-// landing_s is null where the recording ends first, and length_m then how far the foot came;
-// direction_deg is 0 forwards and 90 to the left. And at the top:
-//   steps: {people, people_who_step, first_lift_off_median_s, first_length_median_m}
-void AddStepsJson(const std::vector<PendulumRecording>& recordings, nlohmann::ordered_json* json);
 
 // "P(step) = ...", its errors, and at which margin half of all people step.
 std::string StepProbabilityText(const StepProbability& probability);

@@ -146,20 +146,15 @@ double PeakMomentum(const HipPath& hip, double mass, const Vector2d& along, doub
   return peak;
 }
 
-void AddOnset(const PersonPropagation& person, int frames, PropagationScore* score) {
+void AddOnset(const PersonPropagation& person, PropagationScore* score) {
   auto& f = score->figures;
   const int measured = person.onset_measured, predicted = person.onset_predicted;
   auto add = [&f](PropagationFigure figure, double value) {
     f[figure].sum += value;
     f[figure].weight += 1.0;
   };
-  if (measured < 0) {
-    add(kFalseMovers, predicted >= 0 ? 1.0 : 0.0);
-    add(kBystanderFrames, frames);
-    return;
-  }
+  if (measured < 0) return add(kFalseMovers, predicted >= 0 ? 1.0 : 0.0);
   add(kMissedMovers, predicted < 0 ? 1.0 : 0.0);
-  add(kOnsetErrorWithMissed, std::abs((predicted < 0 ? frames - 1 : predicted) - measured));
   if (predicted < 0) return;
   add(kOnsetError, std::abs(predicted - measured));
   add(kOnsetBias, predicted - measured);
@@ -181,7 +176,6 @@ void AddSpeed(double dt, PropagationScore* score) {
   auto& f = score->figures;
   if (measured) f[kSlownessMeasured] = {*measured, 1.0};
   if (predicted) f[kSlownessPredicted] = {*predicted, 1.0};
-  if (measured && predicted) f[kSlownessDifference] = {*predicted - *measured, 1.0};
 }
 
 // v = sum s_r / sum w_r; its variance by linearization, n/(n-1) sum (s_r - v w_r)^2 / (sum w_r)^2.
@@ -268,21 +262,15 @@ std::string StoryText(const PendulumRecording& recording, const ForceStory& stor
   return text;
 }
 
-ContactEnergyBalance BalanceContactEnergy(const RolloutPath<double>& path, const ForceTrace& forces,
-                                          double dt) {
-  const int people = path.num_people();
+ContactEnergyBalance BalanceContactEnergy(const RolloutPath<double>& path,
+                                          const ForceTrace& forces) {
   ContactEnergyBalance balance;
-  balance.work.assign(people, 0.0);
-  balance.impulse.assign(people, Vector4<double>::Zero());
   for (int t = 0; t + 1 < path.num_frames(); ++t) {
     double total = 0.0;
-    for (int n = 0; n < people; ++n) {
+    for (int n = 0; n < path.num_people(); ++n) {
       const Vector4<double> step = path.At(t + 1, n).q - path.At(t, n).q;
       const Vector4<double>& now = forces.At(t, n)[ForcePart::kInteraction];
-      const double work = 0.5 * (now + forces.At(t + 1, n)[ForcePart::kInteraction]).dot(step);
-      balance.work[n] += work;
-      balance.impulse[n] += dt * now;
-      total += work;
+      total += 0.5 * (now + forces.At(t + 1, n)[ForcePart::kInteraction]).dot(step);
     }
     (total < 0.0 ? balance.absorbed : balance.returned) += std::abs(total);
   }
@@ -294,19 +282,13 @@ const PropagationFigureInfo& Info(PropagationFigure figure) {
       {"onset_error_frames", "onset error, frames (who move in both)"},
       {"onset_error_reached_frames", "  without the pushed person"},
       {"onset_bias_frames", "  predicted - measured"},
-      {"onset_error_with_missed_frames", "  missed movers as if at the last frame"},
       {"missed_movers_share", "missed movers / movers"},
       {"false_movers_share", "false movers / bystanders"},
-      {"bystander_watched_frames", "a bystander is watched for, frames"},
       {"slowness_measured_s_per_m", "slowness measured, s/m"},
       {"slowness_predicted_s_per_m", "slowness predicted, s/m"},
-      {"slowness_difference_s_per_m", "  predicted - measured"},
       {"momentum_passed_on_measured", "momentum passed on, measured"},
       {"momentum_passed_on_predicted", "momentum passed on, predicted"},
-      {"push_passed_on", "  push's impulse passed on by contact"},
-      {"contact_impulse_passed_on", "  contact's impulse passed on"},
       {"contact_work_J", "work of contact per recording, J"},
-      {"contact_absorbed_J", "  taken from people's motion, J"},
       {"contact_returned_share", "  share given back (restitution squared)"},
   };
   return kInfo[figure];
@@ -358,7 +340,7 @@ PropagationScore ScorePropagation(const PendulumRecording& recording, const HipP
     person.onset_predicted = OnsetFrame(predicted[n]);
     person.peak_momentum_measured = PeakMomentum(recording.hip[n], mass, along, dt);
     person.peak_momentum_predicted = PeakMomentum(predicted[n], mass, along, dt);
-    AddOnset(person, recording.num_frames(), &score);
+    AddOnset(person, &score);
   }
   AddSpeed(dt, &score);
   const std::vector<int> order = ByRank(score.people);
@@ -372,34 +354,12 @@ PropagationScore ScorePropagation(const PendulumRecording& recording, const HipP
   return score;
 }
 
-void AddContactFigures(const IdentifiedModel& model, const PendulumRecording& recording,
-                       const Prediction& prediction, PropagationScore* score) {
+void AddContactFigures(const IdentifiedModel& model, const Prediction& prediction,
+                       PropagationScore* score) {
   if (score->people.empty() || !model.options.interaction.Any()) return;
-  const double dt = recording.scene.dt;
-  const ContactEnergyBalance balance = BalanceContactEnergy(prediction.path, prediction.forces, dt);
-  const Vector2d along = PushDirection(recording);
-  const std::vector<int> order = ByRank(score->people);
-  double crossed = 0.0;  // from the last in rank to the first
-  for (size_t k = order.size(); k-- > 0;) {
-    PersonPropagation& person = score->people[order[k]];
-    person.impulse_on = crossed;
-    person.contact_work = balance.work[order[k]];
-    crossed += balance.impulse[order[k]].head<2>().dot(along);
-  }
-  Eigen::Vector4d push = Eigen::Vector4d::Zero();  // tails included, over the path's steps
-  for (int t = 0; t + 1 < prediction.forces.num_frames(); ++t) {
-    const NetForce<double>& force = prediction.forces.At(t, recording.pushed_person);
-    push += dt * (force[ForcePart::kPush] + force[ForcePart::kTail]);
-  }
+  const ContactEnergyBalance balance = BalanceContactEnergy(prediction.path, prediction.forces);
   auto& f = score->figures;
-  f[kPushPassedOn] = {score->people[order[0]].impulse_on, push.head<2>().dot(along)};
-  for (size_t k = 1; k + 1 < order.size();
-       ++k) {  // the last in rank has no neighbour to pass it to
-    f[kContactPassedOn].sum += score->people[order[k]].impulse_on;
-    f[kContactPassedOn].weight += score->people[order[k - 1]].impulse_on;
-  }
   f[kContactWork] = {balance.TotalWork(), 1.0};
-  f[kContactAbsorbed] = {balance.absorbed, 1.0};
   // Restitution is of mutual contact alone: LDP's terms and networks push without taking anything
   // first.
   if (model.options.interaction.Mutual()) f[kRestitution] = {balance.returned, balance.absorbed};

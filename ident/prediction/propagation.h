@@ -45,7 +45,7 @@ ForceStory RichestStory(const PendulumRecording& recording, const Prediction& pr
 // "X-11: 0 s still; 0.42 s pushed from behind by X-18, up to 230 N (31 N s); ..."
 std::string StoryText(const PendulumRecording& recording, const ForceStory& story);
 
-// The contact energy balance along a rollout: work and impulse on each person.
+// The contact energy balance along a rollout.
 //
 // Work on a person between two frames: (Q_t + Q_t+1) / 2 . (q_t+1 - q_t), the trapezoid of the
 // generalized force along the path, so that a spring alone gives back what it took, whatever the
@@ -53,24 +53,22 @@ std::string StoryText(const PendulumRecording& recording, const ForceStory& stor
 // the positive part returned; contact still loaded at the last frame has not returned its share.
 
 struct ContactEnergyBalance {
-  std::vector<double> work;               // J, on each person
-  std::vector<Vector4<double>> impulse;   // integral of the generalized force
   double absorbed = 0.0, returned = 0.0;  // J
 
   double TotalWork() const { return returned - absorbed; }
 };
 
 // forces: those that drove the path (Rollout's trace); its last frame must hold them too.
-ContactEnergyBalance BalanceContactEnergy(const RolloutPath<double>& path, const ForceTrace& forces,
-                                          double dt);
+ContactEnergyBalance BalanceContactEnergy(const RolloutPath<double>& path,
+                                          const ForceTrace& forces);
 
 // The travel of a push through people: each person's onset, the speed from one to the next, the
 // momentum that is passed on, and the work of contact.
 //
 // Onset: the first frame at which the hip is 2 cm, horizontally, from where it was at frame 0; -1
 // when it never is. A mover has a measured onset within the recording, a bystander has none; people
-// sway, so a bystander watched long enough becomes a mover by this rule (report how long they were
-// watched: kBystanderFrames). Rejected: height as well (breathing and bent knees are no motion).
+// sway, so a bystander watched long enough becomes a mover by this rule. Rejected: height as well
+// (breathing and bent knees are no motion).
 //
 // People are ranked by the distance s_n of their carts from the pushed person's at frame 0; u is
 // the horizontal direction of the push. Speed: the slope b of onset time on s_n over the movers of
@@ -79,10 +77,7 @@ ContactEnergyBalance BalanceContactEnergy(const RolloutPath<double>& path, const
 //
 // Momentum passed on: sum over k of P_k / sum over k of P_(k-1), P_k = M_k max_t v_k . u of the
 // k-th in rank, v the hip's velocity over 6 frames. Above 1 the push grows on its way, below it
-// dies. From the model's own forces also I_0 / I_push and sum I_k / sum I_(k-1), where
-//   I_k = sum over everybody farther than the k-th of the integral of contact force . u,
-// the momentum that has crossed from the k-th on (contact is mutual, so what goes on among those
-// beyond cancels), and I_push is the push with its tail.
+// dies.
 //
 // All summaries are ratios of sums over recordings, with standard errors clustered by recording.
 
@@ -99,9 +94,6 @@ struct PersonPropagation {
   double distance = 0.0;                          // m, from the pushed person's cart at frame 0
   int onset_measured = -1, onset_predicted = -1;  // frames
   double peak_momentum_measured = 0.0, peak_momentum_predicted = 0.0;  // N s, along the push
-  // These two need a model's rollout.
-  double contact_work = 0.0;  // J done on this person by contact
-  double impulse_on = 0.0;    // N s, I_k of this person's rank
 };
 
 // A figure's share from one recording; a summary is the sum of sums over the sum of weights.
@@ -110,22 +102,16 @@ struct Ratio {
 };
 
 enum PropagationFigure : int {
-  kOnsetError,            // frames: mean |predicted - measured| over people who move in both
-  kOnsetErrorReached,     // the same without the pushed person, whose onset is the push's
-  kOnsetBias,             // predicted - measured: positive when the model starts late
-  kOnsetErrorWithMissed,  // over all movers, missed ones as if they started at the last frame
-  kMissedMovers,          // share of movers predicted not to move
-  kFalseMovers,           // share of bystanders predicted to move
-  kBystanderFrames,       // frames over which a bystander was watched
-  kSlownessMeasured,      // s/m
+  kOnsetError,         // frames: mean |predicted - measured| over people who move in both
+  kOnsetErrorReached,  // that without the pushed person, whose onset is the push's
+  kOnsetBias,          // predicted - measured: positive when the model starts late
+  kMissedMovers,       // share of movers predicted not to move
+  kFalseMovers,        // share of bystanders predicted to move
+  kSlownessMeasured,   // s/m
   kSlownessPredicted,
-  kSlownessDifference,  // predicted - measured where both exist
-  kMomentumMeasured,    // momentum passed on
+  kMomentumMeasured,  // momentum passed on
   kMomentumPredicted,
-  kPushPassedOn,     // I_0 / I_push
-  kContactPassedOn,  // sum I_k / sum I_(k-1), k > 0
-  kContactWork,      // J per recording, negative: contact dissipates
-  kContactAbsorbed,  // J per recording taken from people's motion while contact takes energy
+  kContactWork,  // J per recording, negative: contact dissipates
   // Returned over absorbed energy, the square of a coefficient of restitution; only of models whose
   // interaction is mutual contact alone.
   kRestitution,
@@ -151,8 +137,8 @@ struct PropagationScore {
 PropagationScore ScorePropagation(const PendulumRecording& recording, const HipPaths& predicted);
 
 // Adds the figures of the model's forces to the score of the same prediction.
-void AddContactFigures(const IdentifiedModel& model, const PendulumRecording& recording,
-                       const Prediction& prediction, PropagationScore* score);
+void AddContactFigures(const IdentifiedModel& model, const Prediction& prediction,
+                       PropagationScore* score);
 
 struct PropagationMean {
   double value = 0.0, error = 0.0;  // the error is 0 for a single recording

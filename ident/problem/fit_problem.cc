@@ -50,11 +50,7 @@ FitPoint FitProblem::NominalPoint() const {
     const PendulumRecording& recording = recordings()[i];
     if (map_.num_deviations > 0) {
       for (const std::string& unit : PoolingUnits(recording, map_.pool_by)) {
-        const auto start = options_.start_deviations.find(unit);
-        // Starts of options that pool something else since mean other parameters.
-        const bool known = start != options_.start_deviations.end() &&
-                           static_cast<int>(start->second.size()) == map_.num_deviations;
-        point.unit[unit] = known ? start->second : std::vector<double>(map_.num_deviations, 0.0);
+        point.unit[unit].assign(map_.num_deviations, 0.0);
       }
     }
     if (recording.initial_velocity != InitialVelocity::kFree) continue;

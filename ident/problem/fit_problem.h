@@ -38,14 +38,14 @@ struct BuiltProblem {
     const ceres::CostFunction* cost;
   };
   std::vector<Block> blocks;
-  // By recording; no problem where it does not count, or fails in its first step.
+  // Rollouts by recording; no problem where it does not count, or fails in its first step.
   std::vector<RolloutAt> rollouts;
   std::shared_ptr<const std::vector<SideBySide>> side_by_side =
       std::make_shared<const std::vector<SideBySide>>();  // the rollouts with lanes
   std::vector<double*> parameter_blocks;                  // in the order of FitPoint::Flat
   std::vector<FailedRollout> shortened;
-  // By recording: its cost less this is its negative log likelihood, up to a constant that no
-  // point changes (residuals/cost_functions/likelihood_residual.h): only so do costs of problems
+  // Offsets by recording: its cost less this is its negative log likelihood, up to a constant that
+  // no point changes (residuals/cost_functions/likelihood_residual.h): only so do costs of problems
   // built at different points compare. Empty for rollouts.
   std::map<int, double> offsets;
   double Offset() const {
@@ -56,7 +56,7 @@ struct BuiltProblem {
   int rests_left_out = 0;  // settling simulations that could not be rolled out to their end here
 
   void Add(std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& on, int cluster);
-  // As Add, for a cost that rolls out: evaluated once a point, over threads where there are any.
+  // Adds a cost that rolls out: evaluated once a point, over threads where there are any.
   void AddRollout(std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& on,
                   int cluster);
 };
@@ -89,7 +89,8 @@ class FitProblem {
   std::pair<double, double> Bounds(size_t fitted) const;
   // Where a parameter stands among the fitted ones; as many as these are where it is held.
   size_t FittedIndex(Parameter id) const;
-  // As the model sees them: in axes along their pushes, where it is the same in all directions.
+  // The recordings as the model sees them: in axes along their pushes, where it is the same in all
+  // directions.
   const std::vector<PendulumRecording>& recordings() const { return *recordings_; }
   // The frames of a recording in a horizon: so many from its first push on, since before it nothing
   // is learned; 0: all.
@@ -101,7 +102,7 @@ class FitProblem {
   const std::vector<int>& counts() const { return counts_; }  // empty: each once
   int Count(int recording) const { return counts_.empty() ? 1 : counts_[recording]; }
 
-  // The table's nominal values, and deviations, velocities and weights where options and scenes
+  // The table's nominal values, no deviations, and velocities and weights where scenes and networks
   // start them.
   FitPoint NominalPoint() const;
 
@@ -186,7 +187,7 @@ class FitProblem {
 // A pooled parameter of unit u is shared + d_u with d_u ~ N(0, s^2). s maximizes the marginal
 // likelihood of the data, in which the deviations and the shared values are integrated out
 // (empirical Bayes; restricted maximum likelihood, as the shared values are integrated out too).
-// By the EM algorithm (Dempster, Laird and Rubin 1977; Laird and Ware 1982):
+// The EM algorithm (Dempster, Laird and Rubin 1977; Laird and Ware 1982) has
 //   s^2 <- mean over the n units of (E[d_u]^2 + Var[d_u])
 // with mean and variance under the data, the other priors and the last s. Its fixed point is
 //   s^2 = sum of E[d_u]^2 / sum of (1 - Var[d_u] / s^2)

@@ -21,7 +21,8 @@ Eigen::Matrix<double, 2, 3> InPlane(const RestJacobian& rest, int plane) {
   return rest.by_state(Eigen::seqN(plane, 2, 2), Eigen::seqN(plane, 3, 2));
 }
 
-// By the angle at Chebyshev's points of [-1, 0], 0 first: the derivative of what goes through them.
+// The differentiation matrix of Chebyshev's points of [-1, 0], 0 first: derivatives of the
+// polynomial through the values there.
 Eigen::MatrixXd Differentiation(const Eigen::VectorXd& x) {
   const Eigen::Index n = x.size();
   const auto c = [n](Eigen::Index i) {

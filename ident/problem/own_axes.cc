@@ -50,11 +50,13 @@ Scene SceneInOwnAxes(const PendulumRecording& recording, const ModelOptions& opt
                     options.body);
 }
 
-RolloutStatus RollInOwnAxes(const PendulumRecording& recording, const ModelOptions& options,
-                            const std::function<RolloutStatus(const Scene&)>& roll, int num_frames,
-                            RolloutPath<double>* path, FrameTable<NetForce<double>>* trace) {
+RolloutStatus RolloutInOwnAxes(const PendulumRecording& recording, const ModelOptions& options,
+                               const std::vector<ParameterSet<double>>& parameters, int num_frames,
+                               RolloutPath<double>* path, FrameTable<NetForce<double>>* trace) {
   const double angle = OwnAxes(recording, options.directions);
-  const RolloutStatus status = roll(SceneInOwnAxes(recording, options));
+  const Scene scene = SceneInOwnAxes(recording, options);
+  const RolloutStatus status = Rollout<double>(scene, options, parameters, InitialVelocities(scene),
+                                               num_frames, path, trace);
   if (angle == 0.0) return status;
   const TurnedAxes back(-angle);
   for (int t = 0; t < (status.ok ? num_frames : status.frame); ++t) {
@@ -69,17 +71,6 @@ RolloutStatus RollInOwnAxes(const PendulumRecording& recording, const ModelOptio
     }
   }
   return status;
-}
-
-RolloutStatus RolloutInOwnAxes(const PendulumRecording& recording, const ModelOptions& options,
-                               const std::vector<ParameterSet<double>>& parameters, int num_frames,
-                               RolloutPath<double>* path, FrameTable<NetForce<double>>* trace,
-                               const FrameTable<Vector4<double>>* noise) {
-  const auto roll = [&](const Scene& scene) {
-    return Rollout<double>(scene, options, parameters, InitialVelocities(scene), num_frames, path,
-                           trace, nullptr, noise);
-  };
-  return RollInOwnAxes(recording, options, roll, num_frames, path, trace);
 }
 
 }  // namespace pushid

@@ -3,7 +3,6 @@
 // (BodyModel).
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -23,19 +22,11 @@ std::shared_ptr<const std::vector<PendulumRecording>> InOwnAxes(
 // The scene of one of them.
 Scene SceneInOwnAxes(const PendulumRecording& recording, const ModelOptions& options);
 
-// A rollout by `roll` of the scene as a model sees it, seen in the axes of the file. num_frames: of
-// the path. trace may be null.
-RolloutStatus RollInOwnAxes(const PendulumRecording& recording, const ModelOptions& options,
-                            const std::function<RolloutStatus(const Scene&)>& roll, int num_frames,
-                            RolloutPath<double>* path,
-                            FrameTable<NetForce<double>>* trace = nullptr);
-
 // A rollout in a model's axes, seen in those of the file: what a fit that sees recordings in the
 // model's axes predicts. path and trace as those of Rollout.
 RolloutStatus RolloutInOwnAxes(const PendulumRecording& recording, const ModelOptions& options,
                                const std::vector<ParameterSet<double>>& parameters, int num_frames,
                                RolloutPath<double>* path,
-                               FrameTable<NetForce<double>>* trace = nullptr,
-                               const FrameTable<Vector4<double>>* noise = nullptr);
+                               FrameTable<NetForce<double>>* trace = nullptr);
 
 }  // namespace pushid

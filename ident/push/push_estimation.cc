@@ -402,14 +402,6 @@ Result<PushWindow> DetectPushWindow(const PendulumRecording& recording,
   return window;
 }
 
-MaybeError ParseInitialVelocity(const std::string& what, const std::string& name,
-                                std::optional<InitialVelocity>* value) {
-  if (name == "auto") return std::nullopt;
-  *value = FromName<InitialVelocity>(name);
-  if (*value && **value != InitialVelocity::kFree) return std::nullopt;
-  return Error{what + " is '" + name + "'; it must be zero, estimated or auto"};
-}
-
 Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const PushWindow& window,
                                    const PushEstimationOptions& options) {
   if (MaybeError wrong = CheckEstimationOptions(recording, options)) return *std::move(wrong);
@@ -431,11 +423,10 @@ Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const Pus
       if (t > 0) states[t].qd = (states[t].q - states[t - 1].q) / dt;
     }
   }
-  const auto at_rest = [&] {
-    if (options.initial_velocity) return *options.initial_velocity == InitialVelocity::kZero;
-    return SmoothedHip(recording, options.person)[window.start].rate.norm() <= kOnsetSpeed;
-  };
-  if (window.start > 0 && at_rest()) states[window.start].qd.setZero();
+  if (window.start > 0 &&
+      SmoothedHip(recording, options.person)[window.start].rate.norm() <= kOnsetSpeed) {
+    states[window.start].qd.setZero();
+  }
 
   EstimatedPush result;
   result.start_speed = states[window.start].qd.head<2>().norm();

@@ -1,6 +1,6 @@
 // ident: the push of a recording that has none: by inverse dynamics, or from force sensors.
 //
-// By inverse dynamics over a window of frames it is
+// Inverse dynamics over a window of frames give it as
 //   F_t = M(q_t) (qd_{t+1} - qd_t) / dt + C(q_t, qd_t) + G(q_t),   t in [start, end).
 // This is the exact inverse of the semi-implicit Euler step: a rollout from (q_start, qd_start) in
 // which F is the whole generalized force (PushKind::kNet, PushUse::kAsRecorded) passes through the
@@ -15,7 +15,6 @@
 // hence the smoothing; its price is that a sharp onset is spread over half the smoothing window.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,10 +36,6 @@ struct PushEstimationOptions {
   // Window of the zero-phase smoothing of q (Savitzky-Golay, cubic) in frames; odd and at least 5,
   // or 0 for none, which keeps the inverse exact.
   int smoothing_frames = 0;
-  // Speed of the person where the window begins: none (zero), or the backward difference
-  // (estimated), of which noise makes a first row as large as any. Unset: estimated where the
-  // smoothed hip is faster than 0.1 m/s. At frame 0 it is the recording's own start velocity.
-  std::optional<InitialVelocity> initial_velocity;
 };
 
 struct EstimatedPush {
@@ -58,12 +53,10 @@ Result<PushWindow> DetectPushWindow(const PendulumRecording& recording,
                                     const PushEstimationOptions& options,
                                     const PushWindow& given = {-1, -1});
 
-// Reads an initial_velocity by name: zero, estimated or auto (unset). what: --initial_velocity.
-MaybeError ParseInitialVelocity(const std::string& what, const std::string& name,
-                                std::optional<InitialVelocity>* value);
-
-// Errors: no such person, a window outside the recording or of no frames, an unsound smoothing
-// window, angles outside the model's domain (|angle| > 1.4 rad).
+// The person is at rest where the window begins, unless the smoothed hip is faster than 0.1 m/s
+// there (of a backward difference noise makes a first row as large as any); at frame 0 it is the
+// recording's own start velocity. Errors: no such person, a window outside the recording or of no
+// frames, an unsound smoothing window, angles outside the model's domain (|angle| > 1.4 rad).
 Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const PushWindow& window,
                                    const PushEstimationOptions& options);
 

@@ -56,7 +56,7 @@ class ProgressCallback : public ceres::IterationCallback {
 constexpr double kWorthAnother = 50.0;
 constexpr int kMostFresh = 5;
 
-// By secants where there are few columns.
+// Minimizes by secants where there are few columns.
 ceres::Solver::Summary Minimize(FitProblem::Built* built, ceres::Solver::Options options,
                                 StructuredSecants secants, RecordingSums* recordings) {
   ceres::Solver::Summary summary;
@@ -300,8 +300,8 @@ Vector4<double> SpreadOfTransitions(const FitProblem& problem, const FitPoint& p
   return (sum / std::max(1, count)).cwiseSqrt();
 }
 
-// With the noise's starts where the user has given no other, at the likelier of the errors of
-// measurement; the point takes them.
+// The problem with the noise's starts where the user has given no other, at the likelier of the
+// errors of measurement; the point takes them.
 FitProblem WithNoise(const FitProblem& problem, FitPoint* point) {
   const Vector4<double> spread = SpreadOfTransitions(problem, *point);
   std::optional<FitProblem> best;

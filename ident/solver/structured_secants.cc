@@ -98,7 +98,7 @@ RowMajorMatrix StructuredSecants::Rows() const {
   const SymmetricEigen ratio = DecomposeSymmetric(lower.solve(half.transpose()));
   const VectorXd along = ratio.vectors.transpose() * z;
   VectorXd share, turned;
-  // As much of S as leaves the cost above nothing: no rows have one below.
+  // The part of S that leaves the cost above nothing: no rows have one below.
   double part = 2.0;
   do {
     part *= 0.5;

@@ -146,7 +146,6 @@ void AddFold(const Fold& fold, const FoldPrediction& prediction, Sums* sums,
   of_fold.name = fold.name;
   of_fold.held_out = static_cast<int>(fold.held_out.size());
   of_fold.behaviour = prediction.behaviour;
-  std::vector<const PropagationScore*> propagation;
   for (size_t k = 0; k < prediction.scores.size(); ++k) {
     const RecordingScore& score = prediction.scores[k];
     RecordingScore& sum = sums->scores[fold.held_out[k]];
@@ -154,7 +153,6 @@ void AddFold(const Fold& fold, const FoldPrediction& prediction, Sums* sums,
     sum.frames = score.frames;
     sum.fell = sum.fell || score.fell;
     of_fold.falls += score.fell;
-    result->falls_harder += score.fell_harder;
     if (!score.failure.empty()) {
       ++of_fold.failures;
       sum.failure = score.failure;
@@ -169,16 +167,13 @@ void AddFold(const Fold& fold, const FoldPrediction& prediction, Sums* sums,
     } else {
       for (size_t n = 0; n < score.steps.size(); ++n) sum.steps[n].margin += score.steps[n].margin;
     }
-    propagation.push_back(&score.propagation);
   }
-  of_fold.value /= std::max<double>(1.0, static_cast<double>(propagation.size()));
-  of_fold.propagation = SummarizePropagation(propagation);
+  of_fold.value /= std::max(1, of_fold.held_out - of_fold.failures);
   result->failures += of_fold.failures;
   result->falls += of_fold.falls;
   if (!of_fold.behaviour) return;
   ++result->fits;
   result->settling += of_fold.behaviour->settles;
-  result->harder_farther += of_fold.behaviour->harder_moves_farther;
   for (const SettlingSimulation& d : of_fold.behaviour->simulations) {
     result->slowest_to_settle = std::max(result->slowest_to_settle, d.speed);
   }
@@ -210,7 +205,7 @@ ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, const P
 }  // namespace
 
 Predictor ModelPredictor(const std::string& name, FitOptions options, int observed, FramesUse use,
-                         ForecastUse forecast, const Draws& draws) {
+                         ForecastUse forecast) {
   const bool learns = observed > 0 && use == FramesUse::kForecast;
   options.num_threads = 1;  // the folds run in parallel
   const auto fit_and_score = [=](const std::vector<PendulumRecording>& recordings,
@@ -226,13 +221,11 @@ Predictor ModelPredictor(const std::string& name, FitOptions options, int observ
     for (int i : test) {
       prediction.scores.push_back(use == FramesUse::kReanchored
                                       ? ScoreReanchored(model, recordings[i], observed)
-                                      : ScoreModel(model, recordings[i], observed, forecast,
-                                                   {draws.count, SeedOfRecording(draws.seed, i)}));
-      prediction.scores.back().fell_harder = FallsWhenPushedHarder(model, recordings[i]);
+                                      : ScoreModel(model, recordings[i], observed, forecast));
     }
     return prediction;
   };
-  return {name, fit_and_score, observed, learns || draws.count > 0};
+  return {name, fit_and_score, observed, learns};
 }
 
 Predictor BandPredictor(const std::string& name, FitOptions options, const BandOptions& bands) {
@@ -284,7 +277,7 @@ Predictor RidgePredictor() { return {"ridge", ScoreRidge}; }
 CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
                               const std::vector<Fold>& folds, const Predictor& predictor,
                               int num_threads, const JobProgress& progress,
-                              const RecordedBodies& bodies, const LabelKeys& group_by) {
+                              const LabelKeys& group_by) {
   const int total = static_cast<int>(recordings.size());
   std::vector<FoldPrediction> predictions(folds.size());
   ParallelFor(
@@ -301,14 +294,6 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
     AddFold(folds[f], predictions[f], &sums, &result);
   }
   result.summary = SummaryOf(recordings, predictor, std::move(sums), group_by);
-  std::vector<PredictedGroup> groups;
-  for (size_t f = 0; f < folds.size(); ++f) {
-    for (size_t k = 0; k < predictions[f].scores.size(); ++k) {
-      const RecordingScore& score = predictions[f].scores[k];
-      if (!score.predicted.empty()) groups.push_back({folds[f].held_out[k], score.predicted});
-    }
-  }
-  result.groups = CompareHips(recordings, bodies, groups);
   return result;
 }
 
@@ -328,15 +313,7 @@ PairedDifference Compare(const CrossValidation& a, const CrossValidation& b) {
   }
   ScoreList all;
   for (const Score& pair : pairs) all.push_back(&pair);
-  const ScoreClusters clusters = ClustersOf(all);
-  difference.clustered_by = clusters.by;
-  difference.clusters = clusters.count;
-  difference.recordings = static_cast<int>(pairs.size());
-  const double n = difference.recordings;
-  for (const Score& pair : pairs) difference.value += pair.value / n;
-  std::vector<Metrics> deviations;
-  for (const Score& pair : pairs) deviations.push_back((pair.value - difference.value) / n);
-  difference.error = clusters.ErrorOfMean(deviations);
+  static_cast<MeanScore&>(difference) = MeanOfScores(all);
   return difference;
 }
 

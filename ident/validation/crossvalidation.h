@@ -14,7 +14,6 @@
 #include "ident/problem/behaviour.h"
 #include "ident/problem/folds.h"
 #include "ident/problem/parallel.h"
-#include "ident/validation/group_metrics.h"
 
 namespace pushid {
 
@@ -41,7 +40,6 @@ struct FoldScore {
   int held_out = 0;
   int failures = 0, falls = 0;
   std::optional<Behaviour> behaviour;
-  PropagationSummary propagation;
 };
 
 struct CrossValidation {
@@ -49,21 +47,16 @@ struct CrossValidation {
   std::vector<FoldScore> folds;
   // Scores of each recording are averaged over the repeats that held it out.
   ScoreSummary summary;
-  int failures = 0, falls = 0, falls_harder = 0;  // over all folds
-  // Number of folds whose model was fitted, of those that settle in every settling simulation, and
-  // of those that move a line farther the harder it is pushed; the fastest anybody still is two
-  // seconds after a push.
-  int fits = 0, settling = 0, harder_farther = 0;
+  int failures = 0, falls = 0;  // over all folds
+  // Number of folds whose model was fitted, and of those that settle in every settling simulation;
+  // the fastest anybody still is two seconds after a push.
+  int fits = 0, settling = 0;
   double slowest_to_settle = 0.0;  // m/s
-  // Metrics of all folds' recordings of several people together, if any.
-  std::optional<GroupMetrics> groups;
 };
 
-// bodies: of the recordings, where they are known.
 CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
                               const std::vector<Fold>& folds, const Predictor& predictor,
                               int num_threads, const JobProgress& progress = nullptr,
-                              const RecordedBodies& bodies = {},
                               const LabelKeys& group_by = UsualGroups());
 
 // b minus a, recording by recording, with the standard error of its mean.
@@ -81,7 +74,7 @@ enum class FramesUse { kForecast, kReanchored };
 // as in ScoreModel.
 Predictor ModelPredictor(const std::string& name, FitOptions options, int observed = 0,
                          FramesUse use = FramesUse::kForecast,
-                         ForecastUse forecast = ForecastUse::kBoth, const Draws& draws = {});
+                         ForecastUse forecast = ForecastUse::kBoth);
 
 // A fit's rollouts with their predictive bands.
 Predictor BandPredictor(const std::string& name, FitOptions options, const BandOptions& bands);

@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <set>
 
 #include "ident/parameters/json_archive.h"
+#include "ident/prediction/propagation.h"
 #include "models/restoration/cvae_restoration.h"
 
 namespace pushid {
@@ -32,17 +32,6 @@ std::vector<Value> AtWordRate(const std::vector<Value>& values, const GroupMotio
 
 constexpr int kNever = -1;
 
-// All people's states that count.
-std::vector<Symbols> StatesOf(const std::vector<GroupMotion>& groups, const StateFunction& states) {
-  std::vector<Symbols> all;
-  for (const GroupMotion& group : groups) {
-    for (const Symbols& symbols : StatesOfPeople(group, states)) {
-      all.push_back(Counted(group, symbols));
-    }
-  }
-  return all;
-}
-
 // True where a begins before b: people who never move come last.
 bool Before(int a, int b) { return a != kNever && (b == kNever || a < b); }
 
@@ -56,6 +45,16 @@ int FirstOf(const std::vector<int>& onsets) {
 
 std::optional<double> Share(double part, int whole) {
   return whole > 0 ? std::optional<double>(part / whole) : std::nullopt;
+}
+
+std::vector<int> OnsetFrames(const GroupMotion& group) {
+  std::vector<int> onsets;
+  for (const BodyMotion& person : group.people) {
+    HipPath hip;
+    for (const Pose& pose : person) hip.push_back(pose.col(kBodyHip));
+    onsets.push_back(OnsetFrame(hip));
+  }
+  return onsets;
 }
 
 std::string Cell(const std::optional<double>& value) {
@@ -94,6 +93,17 @@ Symbols Counted(const GroupMotion& group, const Symbols& symbols) {
   return counted;
 }
 
+std::vector<Symbols> CountedStates(const std::vector<GroupMotion>& groups,
+                                   const StateFunction& states) {
+  std::vector<Symbols> all;
+  for (const GroupMotion& group : groups) {
+    for (const Symbols& symbols : StatesOfPeople(group, states)) {
+      all.push_back(Counted(group, symbols));
+    }
+  }
+  return all;
+}
+
 std::vector<BodyMotion> CountedMotions(const std::vector<GroupMotion>& groups) {
   std::vector<BodyMotion> all;
   for (const GroupMotion& group : groups) {
@@ -108,8 +118,8 @@ std::vector<BodyMotion> CountedMotions(const std::vector<GroupMotion>& groups) {
 SocialMetrics CompareStates(const std::vector<GroupMotion>& recorded,
                             const std::vector<GroupMotion>& motions) {
   const StateFunction states = SocialStateFunction();
-  const std::vector<Symbols> of_recorded = StatesOf(recorded, states);
-  const std::vector<Symbols> of_motions = StatesOf(motions, states);
+  const std::vector<Symbols> of_recorded = CountedStates(recorded, states);
+  const std::vector<Symbols> of_motions = CountedStates(motions, states);
   const auto distance = [&](Transitions which) {
     return JensenShannon(CountTransitions(of_recorded, states.num_symbols(), which),
                          CountTransitions(of_motions, states.num_symbols(), which));
@@ -131,37 +141,10 @@ std::optional<double> CompareWords(const std::vector<GroupMotion>& recorded,
   return Share(sum, count);
 }
 
-std::vector<int> OnsetFrames(const HipPaths& hips) {
-  std::vector<int> onsets;
-  for (const HipPath& hip : hips) {
-    int onset = kNever;
-    for (size_t t = 1; t < hip.size() && onset == kNever; ++t) {
-      if ((hip[t] - hip[0]).norm() > kOnsetWay) onset = static_cast<int>(t);
-    }
-    onsets.push_back(onset);
-  }
-  return onsets;
-}
-
-std::vector<int> OnsetFrames(const GroupMotion& group) {
-  HipPaths hips;
-  for (const BodyMotion& person : group.people) {
-    hips.emplace_back();
-    for (const Pose& pose : person) hips.back().push_back(pose.col(kBodyHip));
-  }
-  return OnsetFrames(hips);
-}
-
 void AddOnsets(const GroupMotion& recorded, const GroupMotion& predicted, OnsetMetrics* metrics) {
-  AddOnsets({OnsetFrames(recorded), recorded.pushed_person, recorded.dt, predicted.first_frame},
-            OnsetFrames(predicted), metrics);
-}
-
-void AddOnsets(const RecordedOnsets& recorded, const std::vector<int>& onsets,
-               OnsetMetrics* metrics) {
-  const std::vector<int>& truth = recorded.frames;
+  const std::vector<int> truth = OnsetFrames(recorded), onsets = OnsetFrames(predicted);
   const auto shown = [&](size_t n) {
-    return truth[n] != kNever && truth[n] < recorded.first_frame;
+    return truth[n] != kNever && truth[n] < predicted.first_frame;
   };
   const int first = FirstOf(truth);
   if (first == kNever || !shown(first)) {
@@ -226,38 +209,6 @@ TextTable GroupMetricsTable(const std::vector<GroupMetricsRow>& rows) {
 
 std::string GroupMetricsText(const std::vector<GroupMetricsRow>& rows) {
   return GroupMetricsTable(rows).ToString() + kGroupMetricsLegend + "\n";
-}
-
-std::optional<GroupMetrics> CompareHips(const std::vector<PendulumRecording>& recordings,
-                                        const RecordedBodies& bodies,
-                                        const std::vector<PredictedGroup>& predicted) {
-  if (predicted.empty()) return std::nullopt;
-  GroupMetrics metrics;
-  std::vector<GroupMotion> recorded, motions;
-  std::set<int> seen;
-  for (const PredictedGroup& group : predicted) {
-    const PendulumRecording& recording = recordings[group.recording];
-    const double dt = recording.scene.dt;
-    AddOnsets({OnsetFrames(recording.hip), recording.pushed_person, dt}, OnsetFrames(group.hips),
-              &metrics.onsets);
-    if (bodies.empty()) continue;
-    const std::vector<BodyMotion>& people = bodies[group.recording];
-    // Each recording is compared with once, however often it was predicted.
-    if (seen.insert(group.recording).second) recorded.push_back({people, dt});
-    GroupMotion& carried = motions.emplace_back(GroupMotion{{}, dt});  // first poses, by the hips
-    for (size_t n = 0; n < people.size(); ++n) {
-      const Pose& first = people[n].front();
-      BodyMotion& motion = carried.people.emplace_back();
-      for (const Vector3<double>& hip : group.hips[n]) {
-        const Eigen::Vector3d move = hip - first.col(kBodyHip);
-        motion.push_back(first.colwise() + move);
-      }
-    }
-  }
-  if (bodies.empty()) return metrics;
-  metrics.social = CompareStates(recorded, motions);
-  metrics.social.ndms = CompareWords(recorded, motions);
-  return metrics;
 }
 
 }  // namespace pushid

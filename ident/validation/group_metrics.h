@@ -10,8 +10,8 @@
 //   onset_error    |begin - recorded begin| in the mean over people who move in both, s
 //   false_movers, missed_movers   people who begin to move in one of the two alone
 //
-// A person begins to move when the hip is more than 2 cm from its place at frame 0. What these can
-// see and cannot: validation/README.md.
+// When a person begins to move: prediction/propagation.h. What these can see and cannot:
+// validation/README.md.
 //
 // Frames that a predictor was shown do not count. Of states and words those count whose steps from
 // frame to frame end at first_frame or later, in recorded groups as in predicted ones, so that no
@@ -55,6 +55,10 @@ std::vector<Symbols> StatesOfPeople(const GroupMotion& group, const StateFunctio
 // The states that count, preceded by the first of them again, as at frame 0.
 Symbols Counted(const GroupMotion& group, const Symbols& symbols);
 
+// All people's states that count.
+std::vector<Symbols> CountedStates(const std::vector<GroupMotion>& groups,
+                                   const StateFunction& states);
+
 // All people's frames whose steps count.
 std::vector<BodyMotion> CountedMotions(const std::vector<GroupMotion>& groups);
 
@@ -68,11 +72,6 @@ SocialMetrics CompareStates(const std::vector<GroupMotion>& recorded,
 std::optional<double> CompareWords(const std::vector<GroupMotion>& recorded,
                                    const std::vector<GroupMotion>& motions);
 
-// The frame at which each person begins to move; -1: never.
-inline constexpr double kOnsetWay = 0.02;  // m
-std::vector<int> OnsetFrames(const HipPaths& hips);
-std::vector<int> OnsetFrames(const GroupMotion& group);
-
 struct OnsetMetrics {
   int recordings = 0, pushed_named = 0;  // in which nobody was shown to begin
   int pairs = 0, in_order = 0;  // of people who begin in the recording, at different frames
@@ -80,14 +79,6 @@ struct OnsetMetrics {
   double error_sum = 0.0;       // s, over the movers
   int false_movers = 0, missed_movers = 0;
 };
-struct RecordedOnsets {
-  std::vector<int> frames;  // of each person
-  int pushed_person = 0;
-  double dt = 1.0 / 60.0;
-  int first_frame = 1;
-};
-void AddOnsets(const RecordedOnsets& recorded, const std::vector<int>& onsets,
-               OnsetMetrics* metrics);
 void AddOnsets(const GroupMotion& recorded, const GroupMotion& predicted, OnsetMetrics* metrics);
 
 struct GroupMetrics {
@@ -111,25 +102,5 @@ std::string GroupMetricsText(const std::vector<GroupMetricsRow>& rows);
 inline constexpr char kGroupMetricsLegend[] =
     "SSCP, changes (0: the same) and NDMS (1: the same) measure how people move and how often "
     "they step, but not whether the right person does so in time; onsets measure only that.";
-
-// Metrics of groups whose hips alone are predicted, as pendulums do.
-//
-// The hips show who begins to move when. The measures of what people do (sscp, sscp_changes,
-// ndms) need bodies: each recorded first pose is carried by the predicted hip and never steps, as
-// `rigid` bodies do (bodies/body_evaluation.h). Where recordings have no bodies they have no value.
-
-// [recording][person]; empty where bodies are not known.
-using RecordedBodies = std::vector<std::vector<BodyMotion>>;
-
-// A prediction of one recording, which may be predicted several times.
-struct PredictedGroup {
-  int recording = 0;
-  HipPaths hips;  // [person][frame], m
-};
-
-// The metrics; none where nothing was predicted.
-std::optional<GroupMetrics> CompareHips(const std::vector<PendulumRecording>& recordings,
-                                        const RecordedBodies& bodies,
-                                        const std::vector<PredictedGroup>& predicted);
 
 }  // namespace pushid

@@ -65,8 +65,6 @@ void Fields(JsonArchive& a, PersonPropagation& p) {
   a("onset_predicted_frame", p.onset_predicted);
   a("peak_momentum_measured_N_s", p.peak_momentum_measured);
   a("peak_momentum_predicted_N_s", p.peak_momentum_predicted);
-  a("impulse_passed_on_N_s", p.impulse_on);
-  a("contact_work_J", p.contact_work);
 }
 
 namespace {
@@ -243,7 +241,7 @@ std::string CountsText(double part, double whole) {
   return Rounded(part, 3) + " of " + Rounded(whole, 4);
 }
 
-// Means of the model and of the baselines; all: weighted by frames too, and by every label.
+// Means of the model and of the baselines; all: by every label.
 TextTable MeansTable(const Evaluation& evaluation, bool all) {
   const ScoreSummary& m = evaluation.model;
   const MetricList shown = TableMetrics(m.observed);
@@ -254,12 +252,9 @@ TextTable MeansTable(const Evaluation& evaluation, bool all) {
     summaries.push_back(&baseline.summary);
   }
   TextTable table(header);
-  for (const auto& [name, mean] : {std::pair("mean over recordings", &ScoreMeans::mean),
-                                   {"frame-weighted", &ScoreMeans::frame_weighted}}) {
-    std::vector<MeanScore> means;
-    for (const ScoreSummary* one : summaries) means.push_back(one->*mean);
-    if (all || mean == &ScoreMeans::mean) table.Add(MeansRow(name, means, shown, false));
-  }
+  std::vector<MeanScore> means;
+  for (const ScoreSummary* one : summaries) means.push_back(one->mean);
+  table.Add(MeansRow("mean over recordings", means, shown, false));
   const bool strengths = m.by.count(kMagnitudeLabel) > 0;
   const std::string first = strengths ? kMagnitudeLabel : m.by.empty() ? "" : m.by.begin()->first;
   AddGroups(summaries, shown, false, all ? "" : first, &table);
@@ -325,6 +320,29 @@ std::string ConclusionText(const PairedDifference& d) {
          " (" + interval + ").";
 }
 
+// The candidates with their differences from the first; all: how many fits settle as well.
+TextTable CandidatesTable(const std::vector<CrossValidation>& candidates, bool all) {
+  const CrossValidation& own = candidates.front();
+  const MetricList shown = TableMetrics(own.summary.observed);
+  std::vector<std::string> header = {"held out", NamesText(shown),
+                                     kMetrics[kHipAde].name + (" - " + own.predictor + ", 95 %"),
+                                     ">failed", ">fell"};
+  if (all) header.push_back(">settle");
+  TextTable table(header);
+  for (const CrossValidation& one : candidates) {
+    const PairedDifference difference = Compare(own, one);
+    const bool compared = &one != &own && difference.clusters > 1;
+    std::vector<std::string> row = {one.predictor, MeanText(one.summary.mean, shown),
+                                    compared ? Rounded(difference.value[kHipAde], 2) + " +- " +
+                                                   Rounded(HalfInterval95(difference), 2)
+                                             : "",
+                                    std::to_string(one.failures), std::to_string(one.falls)};
+    if (all) row.push_back(one.fits > 0 ? CountsText(one.settling, one.fits) : "");
+    table.Add(row);
+  }
+  return table;
+}
+
 }  // namespace
 
 Json ScoreJson(const Score& score, const MetricList& metrics) {
@@ -339,7 +357,6 @@ Json ScoreJson(const Score& score, const MetricList& metrics) {
 
 void AddMeans(const ScoreMeans& means, const MetricList& metrics, bool with_clusters, Json* json) {
   (*json)["mean"] = MeanJson(means.mean, metrics, with_clusters);
-  (*json)["frame_weighted"] = MeanJson(means.frame_weighted, metrics, with_clusters);
   for (const auto& [key, groups] : means.by) {
     Json& by = (*json)["by_" + key] = Json::object();
     for (const auto& [name, mean] : groups) by[name] = MeanJson(mean, metrics, with_clusters);
@@ -365,12 +382,7 @@ Json ToJson(const ScoreSummary& s, bool with_recordings) {
     Json& with_static = json["mean_with_failures_as_static"] = Json::object();
     AddMetrics(MeanWithStatic(s), TableMetrics(s.observed), &with_static);
   }
-  if (s.propagation.recordings > 0) {
-    Json& propagation = json["propagation"] = JsonOf(s.propagation);
-    if (!s.propagation_by_setting.empty()) {
-      propagation["by_setting"] = JsonOf(s.propagation_by_setting);
-    }
-  }
+  if (s.propagation.recordings > 0) json["propagation"] = JsonOf(s.propagation);
   if (s.steps.known()) json["who_steps"] = JsonOf(s.steps);
   return json;
 }
@@ -388,12 +400,9 @@ Json ToJson(const CrossValidation& v) {
   json.update(ToJson(v.summary, true));
   json["failures"] = v.failures;
   json["falls"] = v.falls;
-  json["falls_when_pushed_harder"] = v.falls_harder;
-  if (v.groups) json["group_metrics"] = ToJson(*v.groups);
   if (v.fits > 0) {
     json["fits"] = v.fits;
     json["fits_that_settle"] = v.settling;
-    json["fits_that_move_lines_farther_the_harder"] = v.harder_farther;
     json["slowest_to_settle_m_s"] = NumberJson(v.slowest_to_settle);
   }
   json["folds"] = Json::array();
@@ -403,7 +412,6 @@ Json ToJson(const CrossValidation& v) {
     row["failures"] = fold.failures;
     row["falls"] = fold.falls;
     if (fold.behaviour) row["behaviour"] = ToJson(*fold.behaviour);
-    if (fold.propagation.recordings > 0) row["propagation"] = JsonOf(fold.propagation);
     json["folds"].push_back(std::move(row));
   }
   return json;
@@ -463,13 +471,10 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
                     BandsText("model", m));
   if (m.steps.known()) text += "\n" + StepScoresText({{"model", &m.steps}});
   if (m.propagation.recordings == 0) return text;
-  std::vector<PropagationColumn> columns = {{"model", &m.propagation}};
-  if (m.propagation_by_setting.size() > 1) {
-    for (const auto& [name, setting] : m.propagation_by_setting)
-      columns.push_back({name, &setting});
-  }
-  columns.push_back({"constant velocity", &evaluation.Baseline("constant_velocity").propagation});
-  return text + "\n" + PropagationText(columns);
+  return text + "\n" +
+         PropagationText(
+             {{"model", &m.propagation},
+              {"constant velocity", &evaluation.Baseline("constant_velocity").propagation}});
 }
 
 Screen EvaluationScreen(const Evaluation& evaluation) {
@@ -484,8 +489,7 @@ Screen EvaluationScreen(const Evaluation& evaluation) {
   }
   const std::string travels = TravelText(m.propagation);
   screen.paragraphs.push_back((travels.empty() ? "" : "how pushes travel: ") + travels);
-  screen.rest =
-      "the rest: --details; recordings and steps: --per_recording; all numbers: --json_out";
+  screen.rest = "the rest: --details; recordings: --per_recording; all numbers: --json_out";
   return screen;
 }
 
@@ -541,13 +545,6 @@ std::string PropagationText(const std::vector<PropagationColumn>& columns) {
   return text;
 }
 
-std::vector<std::string> FoldPropagationCells(const PropagationSummary& s) {
-  const PropagationMean& onset = s.figures[kOnsetError];
-  const bool says = onset.known() && !MostMissed(s);
-  return {says ? Rounded(onset.value, 3) : "-", CountsText(s.missed_movers, s.movers),
-          CountsText(s.false_movers, s.bystanders)};
-}
-
 std::string CrossValidationText(const std::vector<CrossValidation>& candidates) {
   std::string text;
   if (candidates.empty()) return text;
@@ -557,44 +554,14 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
     text += FailuresText(candidate.predictor, candidate.summary, shown);
   }
   using Cells = std::vector<std::string>;
-  const Cells onsets = {">onset error", ">missed movers", ">false movers"};
-  TextTable folds(
-      Row({{"fold", ">held out"}, Titles(shown), {">failed", ">fell"}, groups ? onsets : Cells()}));
+  TextTable folds(Row({{"fold", ">held out"}, Titles(shown), {">failed", ">fell"}}));
   for (const FoldScore& fold : candidates[0].folds) {
     folds.Add(Row({{fold.name, std::to_string(fold.held_out)},
                    PlainCells(fold.value, shown),
-                   {std::to_string(fold.failures), std::to_string(fold.falls)},
-                   groups ? FoldPropagationCells(fold.propagation) : Cells()}));
+                   {std::to_string(fold.failures), std::to_string(fold.falls)}}));
   }
   text += folds.ToString() + "\n";
-  Cells titles;
-  for (MetricId m : shown) titles.push_back(kMetrics[m].Title());
-  TextTable table(
-      Row({{"held out"},
-           titles,
-           {"frame-weighted", kMetrics[kHipAde].name + (" - " + candidates[0].predictor), ">failed",
-            ">fell", ">fell harder", ">settle", groups ? ">harder, farther" : ">"}}));
-  const auto folds_that = [](int number, const CrossValidation& candidate) {
-    return candidate.fits > 0 ? std::to_string(number) + " of " + std::to_string(candidate.fits)
-                              : "";
-  };
-  for (const CrossValidation& candidate : candidates) {
-    const PairedDifference difference = Compare(candidates[0], candidate);
-    const bool compared = &candidate != &candidates[0] && difference.recordings > 0;
-    table.Add(Row({{candidate.predictor},
-                   MeanCells(candidate.summary.mean, shown),
-                   {Joined(PlainCells(candidate.summary.frame_weighted.value, shown), " / "),
-                    compared ? Rounded(difference.value[kHipAde], 2) + " +- " +
-                                   Rounded(difference.error[kHipAde], 2)
-                             : "",
-                    std::to_string(candidate.failures), std::to_string(candidate.falls),
-                    candidate.fits > 0 ? std::to_string(candidate.falls_harder) : "",
-                    folds_that(candidate.settling, candidate),
-                    groups ? folds_that(candidate.harder_farther, candidate) : ""}}));
-  }
-  std::string said =
-      ErrorsText(candidates[0].summary) + ObservedText(candidates[0].summary) +
-      "fell harder: when pushed 1.4 times as hard, until 40 frames past the recording's end\n";
+  std::string said = ErrorsText(candidates[0].summary) + ObservedText(candidates[0].summary);
   for (const CrossValidation& candidate : candidates) {
     said += BandsText(candidate.predictor, candidate.summary);
   }
@@ -605,23 +572,19 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   std::vector<const ScoreSummary*> summaries;
   NamedStepScores steps;
   std::vector<PropagationColumn> columns;
-  std::vector<GroupMetricsRow> metrics;
   for (const CrossValidation& candidate : candidates) {
     header.push_back(candidate.predictor);
     summaries.push_back(&candidate.summary);
     steps.emplace_back(candidate.predictor, &candidate.summary.steps);
     columns.push_back({candidate.predictor, &candidate.summary.propagation});
-    if (candidate.groups) metrics.push_back({candidate.predictor, &*candidate.groups});
   }
   TextTable by_group(header);  // empty where no label of --group_by tells recordings apart
   AddGroups(summaries, shown, true, "", &by_group);
   const std::string who_steps = StepScoresText(steps);
-  text += table.ToString() + TextLines(said) +
+  text += CandidatesTable(candidates, true).ToString() + TextLines(said) +
           (by_group.empty() ? "" : "\n" + by_group.ToString()) +
           (who_steps.empty() ? "" : "\n" + who_steps);
-  if (!groups) return text;
-  return text + "\n" + PropagationText(columns) +
-         (metrics.empty() ? "" : "\n" + GroupMetricsText(metrics));
+  return groups ? text + "\n" + PropagationText(columns) : text;
 }
 
 Screen CrossValidationScreen(const std::vector<CrossValidation>& candidates) {
@@ -629,28 +592,17 @@ Screen CrossValidationScreen(const std::vector<CrossValidation>& candidates) {
   const MetricList shown = TableMetrics(own.summary.observed);
   Screen screen{CountText(own.summary.mean.recordings, "recording") + " in " +
                 CountText(own.folds.size(), "fold") + ", each predicted by fits without it"};
-  TextTable table({"held out", NamesText(shown),
-                   kMetrics[kHipAde].name + (" - " + own.predictor + ", 95 %"), ">failed",
-                   ">fell"});
   const CrossValidation* rival = nullptr;  // the best of the others
   for (const CrossValidation& one : candidates) {
-    const PairedDifference difference = Compare(own, one);
-    const bool compared = &one != &own && difference.clusters > 1;
-    if (compared && (rival == nullptr || MeanWithStatic(one.summary)[kHipAde] <
-                                             MeanWithStatic(rival->summary)[kHipAde])) {
-      rival = &one;
-    }
-    table.Add({one.predictor, MeanText(one.summary.mean, shown),
-               compared ? Rounded(difference.value[kHipAde], 2) + " +- " +
-                              Rounded(HalfInterval95(difference), 2)
-                        : "",
-               std::to_string(one.failures), std::to_string(one.falls)});
+    if (&one == &own || Compare(own, one).clusters < 2) continue;
+    const auto error = [](const CrossValidation& v) { return MeanWithStatic(v.summary)[kHipAde]; };
+    if (rival == nullptr || error(one) < error(*rival)) rival = &one;
   }
   for (const CrossValidation& one : candidates) {
     screen.verdict += FailuresText(one.predictor, one.summary, shown);
   }
   if (rival != nullptr) screen.verdict += ConclusionText(Compare(own, *rival));
-  screen.tables = {table};
+  screen.tables = {CandidatesTable(candidates, false)};
   screen.paragraphs = {ErrorsText(own.summary), ObservedText(own.summary)};
   for (const CrossValidation& one : candidates) {
     screen.paragraphs.push_back(BandsText(one.predictor, one.summary));

@@ -24,8 +24,6 @@ TextTable PropagationTable(const std::vector<PropagationColumn>& columns);
 std::string PropagationText(const std::vector<PropagationColumn>& columns);
 // A sentence about how pushes travel through groups, measured and predicted; empty without any.
 std::string TravelText(const PropagationSummary& propagation);
-// Onset error, missed and false movers of one fold.
-std::vector<std::string> FoldPropagationCells(const PropagationSummary& summary);
 
 // The predictors, and whether the first differs from the best of the others.
 Screen CrossValidationScreen(const std::vector<CrossValidation>& candidates);
@@ -40,7 +38,7 @@ nlohmann::ordered_json ToJson(const PairedDifference& difference);
 
 // A row of a table of recordings: id, frames, and the metrics or the failure.
 nlohmann::ordered_json ScoreJson(const Score& score, const MetricList& metrics);
-// Adds `mean`, `frame_weighted`, `by_KEY` and `without_label`. with_clusters: each says by what its
+// Adds `mean`, `by_KEY` and `without_label`. with_clusters: each says by what its
 // errors are clustered.
 void AddMeans(const ScoreMeans& means, const MetricList& metrics, bool with_clusters,
               nlohmann::ordered_json* json);

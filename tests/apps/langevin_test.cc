@@ -1,4 +1,4 @@
-// Process noise through the programs: fits by single steps, drawn futures, most probable paths.
+// Process noise through the programs: fits by single steps, most probable paths.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -14,9 +14,6 @@ class LangevinAppTest : public AppTest {
     AppTest::SetUp();
     noisy_ = FitModel("noisy.json", {"--likelihood=innovation"});
     plain_ = FitModel("plain.json");
-  }
-  std::vector<std::string> Predict(const std::string& model) const {
-    return {"--model=" + model, Recordings(), "--id=" + id_, "--out=" + Path("out.csv")};
   }
   static size_t CountLines(const std::string& text) {
     return static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
@@ -39,35 +36,6 @@ TEST_F(LangevinAppTest, AFitBySingleStepsSaysHowLikely) {
   EXPECT_TRUE(Contains(report.out, "-2 log L"));
 }
 
-TEST_F(LangevinAppTest, FuturesAreDrawnScoredAndWritten) {
-  std::vector<std::string> predict = Predict(noisy_);
-  predict.push_back("--samples=20");
-  const AppRun drawn = Succeeded(RunApp("pushid-predict", predict));
-  EXPECT_TRUE(Contains(drawn.out, "20 drawn futures"));
-  EXPECT_EQ(RunApp("pushid-predict", predict).out, drawn.out) << "the same seed, the same futures";
-
-  const std::string scores = Path("scores.json");
-  Succeeded(RunApp("pushid-evaluate",
-                   {"--model=" + noisy_, Recordings(), "--samples=20", "--json_out=" + scores}));
-  const nlohmann::ordered_json mean = Json(scores).at("mean");
-  for (const char* key : {"inside90_x_share", "crps_m", "crps_standard_error_m"}) {
-    EXPECT_TRUE(mean.contains(key)) << key;
-  }
-
-  const AppRun held_out = Succeeded(
-      RunApp("pushid-crossvalidate",
-             {Recordings(), "--likelihood=innovation", "--folds=2", "--repeats=1", "--samples=10",
-              "--compare=steps: --likelihood=transition", "--json_out=" + scores, "--quiet"}));
-  for (int i : {0, 1}) {
-    EXPECT_TRUE(Json(scores).at("predictors")[i].at("mean").contains("inside90_x_share")) << i;
-  }
-  EXPECT_TRUE(Contains(held_out.out, "steps: 90 % bands hold"));
-
-  const AppRun line = Succeeded(RunApp(
-      "pushid-formation", {"--model=" + noisy_, "--formation=line", "--people=1", "--samples=10"}));
-  EXPECT_TRUE(Contains(line.out, "10 drawn futures"));
-}
-
 TEST_F(LangevinAppTest, TheMostProbablePathAndItsEnds) {
   const std::string model = "--model=" + FitModel("states.json", {"--likelihood=transition"});
   const AppRun run =
@@ -82,10 +50,6 @@ TEST_F(LangevinAppTest, TheMostProbablePathAndItsEnds) {
 }
 
 TEST_F(LangevinAppTest, BadUse) {
-  std::vector<std::string> predict = Predict(plain_);
-  predict.push_back("--samples=10");
-  EXPECT_EQ(RunApp("pushid-predict", predict).exit_code, 1);
-  EXPECT_TRUE(Contains(RunApp("pushid-predict", predict).err, "process noise"));
   const std::string model = "--model=" + noisy_;
   const std::vector<std::pair<std::vector<std::string>, std::string>> paths = {
       {{"--model=" + plain_, "--to=x=1"}, "no process noise"},
@@ -107,8 +71,6 @@ TEST_F(LangevinAppTest, BadUse) {
     all.push_back(Recordings());
     EXPECT_TRUE(Refused(RunApp("pushid-fit", all), {says})) << says;
   }
-  EXPECT_TRUE(
-      Refused(RunApp("pushid-crossvalidate", {Recordings(), "--samples=10"}), {"process noise"}));
 }
 
 }  // namespace

@@ -190,17 +190,10 @@ TEST_F(PushAppTest, APushIsNotReplacedUnasked) {
   EXPECT_EQ(ReadText(Path("made/push.csv")), before);
 }
 
-// Inside a motion: who is taken to be at rest there needs a blow.
 TEST_F(PushAppTest, AWindowInsideAMotionStartsWithItsVelocity) {
   const AppRun usual = Succeeded(MakePush({"--frames=15:30"}));
   EXPECT_TRUE(Contains(usual.out, "m/s at its start"));
   EXPECT_FALSE(Contains(usual.err, "stands out")) << usual.err;
-  const AppRun at_rest =
-      Succeeded(MakePush({"--frames=15:30", "--initial_velocity=zero", "--overwrite"}));
-  EXPECT_TRUE(Contains(at_rest.err, "the first row"));
-  EXPECT_TRUE(Contains(at_rest.err, "stands out"));
-  EXPECT_TRUE(
-      Refused(MakePush({"--initial_velocity=free", "--overwrite"}), {"--initial_velocity"}));
 }
 
 TEST_F(PushAppTest, EntriesOfSeveralRecordings) {

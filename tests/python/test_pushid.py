@@ -268,7 +268,7 @@ def test_hints_are_calls():
             "--fix: 'a' is unknown": "fix: 'a' is unknown",
             "repeat it by pushid-check --bootstrap=199": "repeat it by result.bootstrap(199)",
             "--bootstrap and --profile refit": "result.bootstrap() and result.profile() refit",
-            "see pushid-push --initial_velocity": "see pushid.estimate_push(recording, initial_velocity)",
+            "see pushid-push --person": "see pushid.estimate_push(recording, person)",
             "(pushid-fit --setting=groups --interaction=contact)":
                 '(pushid.fit(recordings, setting="groups", interaction="contact"))',
             "pushid-fit --model_out writes one": "result.save writes one",

@@ -106,11 +106,12 @@ FIGURES = [
 
 
 def travel():
-    fitted = studies.on_recordings("pushid-evaluate", "groups", f"--model={group().path}").json["propagation"]
+    fitted, row_1 = (studies.on_recordings("pushid-evaluate", setting, f"--model={group().path}").json["propagation"]
+                     for setting in ("groups", "row_1"))
     held_out = candidates_output().json["predictors"][0]["propagation"]
     rows = []
     for title, key in FIGURES:
-        cells = [source[key] for source in (fitted, fitted["by_setting"]["row_1"], held_out)]
+        cells = [source[key] for source in (fitted, row_1, held_out)]
         rows.append([title] + [with_error(c["value"], c["standard_error"]) for c in cells])
     text = studies.table(["", "fitted to all 49", "of these `row_1`", "held out, 5 folds"], rows)
     return (f"{text}\n\nOf {fitted['movers'] + fitted['bystanders']:.0f} people {fitted['movers']:.0f} move and "

@@ -1,8 +1,7 @@
-"""People who are no clockwork: process noise, likelihoods of single steps, drawn futures (ident/uncertainty and ident/prediction).
+"""People who are no clockwork: process noise and likelihoods of single steps (ident/uncertainty).
 
 known      planted noise and gains, 50 studies: how often 95 % intervals of the innovation fit cover; 3 minutes
 likelihood the 32 recordings of single people by each likelihood, with the time it took; seconds
-futures    drawn futures of single people, held out; 6 minutes
 
 Times are those of one core.
 """
@@ -11,7 +10,7 @@ import tempfile
 import time
 
 import studies
-from studies import number, with_error
+from studies import with_error
 
 TRUTH = {"sigma_x": 12, "sigma_y": 9, "sigma_theta": 6, "sigma_phi": 5}
 NOISE = 0.002  # m, of every joint
@@ -75,30 +74,5 @@ def likelihood():
                          rows)
 
 
-METRICS = [("inside50_x_share", "inside 50 %, x"), ("inside90_x_share", "inside 90 %, x"), ("inside90_y_share", "90 %, y")]
-
-
-def drawn(setting, likelihoods, *arguments):
-    compare = "; ".join(f"{like} diagonal: --likelihood={like}" for like in likelihoods)
-    out = studies.on_recordings("pushid-crossvalidate", setting, "--yardsticks=false", "--samples=100", *arguments,
-                                f"--compare={compare}").json
-    rows = []
-    for one in out["predictors"]:
-        mean = one["mean"]
-        if METRICS[0][0] not in mean:
-            continue
-        cells = []
-        for key, _ in METRICS:
-            name, unit = key.rsplit("_", 1)
-            cells.append(with_error(mean[key], mean[f"{name}_standard_error_{unit}"]))
-        rows.append([f"{setting}, {one['name']}", *cells, number(mean["hipADE_m"])])
-    return rows
-
-
-def futures():
-    rows = drawn("single", ["innovation"], "--folds=4", "--repeats=5")
-    return studies.table(["held out", *(t for _, t in METRICS), "hipADE of the rollout, m"], rows)
-
-
 if __name__ == "__main__":
-    studies.main(__file__, {"known": known, "likelihood": likelihood, "futures": futures})
+    studies.main(__file__, {"known": known, "likelihood": likelihood})

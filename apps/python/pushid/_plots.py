@@ -68,10 +68,6 @@ def _panel(axes, panel, looks):
                       markeredgecolor=line["color"] if color == "none" else color)
         else:
             axes.plot(*scaled(points), **line)
-    for x, y, text in panel["labels"]:
-        axes.annotate(text, (x, y), ha="center", va="center", fontsize="x-small")
-    if panel["is_map"]:
-        axes.set_aspect("equal")
     for level in panel["levels"]:
         axes.axhline(level, **_styles(_pushid.level_look, looks)[0])
     for mark in panel["marks"]:

@@ -121,13 +121,13 @@ def checked(recordings):
     return found
 
 
-def estimate_push(recording, *, person=0, first_frame=-1, end_frame=-1, smoothing=9, initial_velocity="auto"):
+def estimate_push(recording, *, person=0, first_frame=-1, end_frame=-1, smoothing=9):
     """Estimates a missing push by inverse dynamics: (rows of 4 generalized forces, first frame, kind).
 
     first_frame, end_frame: the window; -1: detected. smoothing: Savitzky-Golay window in frames, odd; 0: none.
     Everything that accelerates the hip is attributed to the push, which often overestimates it.
     """
-    return _pushid.estimate_push(*checked(recording), person, first_frame, end_frame, smoothing, initial_velocity)
+    return _pushid.estimate_push(*checked(recording), person, first_frame, end_frame, smoothing)
 
 
 def findings(recordings):

@@ -190,8 +190,7 @@ class Result:
         {"hip": (frames, people, 3), "states": (frames, people, 8: q and its rate), ...}; with `observed` also the
         90 % bands "lower90" and "upper90" of the later frames, forecast by "physics" (the rollout), "input" (a filter with
         an unknown force) or "both". samples: number of futures to draw, as "samples" of shape (samples, frames, people,
-        3), without `observed`: from the process noise if the model has one, or from the covariance of the parameters and
-        the errors of the fitted recordings. frames: number of frames (0: as in the recording). set: {name: value} for "what if";
+        3), without `observed`: from the covariance of the parameters and the errors of the fitted recordings. frames: number of frames (0: as in the recording). set: {name: value} for "what if";
         push_scale multiplies the push, and push_again lists frames at which it comes again. Raises FitError if a
         rollout leaves the model's domain; warns about pushes unlike the fitted ones. "person" says whose answer it is where
         pushes are external and those of the fit were not, else "".

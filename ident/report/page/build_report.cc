@@ -6,7 +6,6 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/bodies/body_recording.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"
@@ -172,7 +171,7 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
     const FormationRun& run = view.run;
     if (run.recording.num_people() < 2 || !run.prediction.status.ok) continue;
     scores.push_back(ScorePropagation(run.recording, run.prediction.hip));
-    AddContactFigures(identified, run.recording, run.prediction, &scores.back());
+    AddContactFigures(identified, run.prediction, &scores.back());
   }
   std::vector<const PropagationScore*> all;
   for (const PropagationScore& score : scores) all.push_back(&score);
@@ -219,33 +218,9 @@ ReportSection StepSection(const ReportSource& source) {
 
 ReportSection GroupSection(const ReportSource& source) {
   ReportSection section{"groups", "Groups"};
-  std::vector<PendulumRecording> recordings;
-  std::vector<Recording> with_bodies;
-  std::vector<PredictedGroup> by_model, by_velocity;
-  for (const RecordingView& view : source.views) {
-    const PendulumRecording& recording = view.run.recording;
-    if (recording.num_people() < 2 || !view.run.prediction.status.ok) continue;
-    const int index = static_cast<int>(recordings.size());
-    recordings.push_back(recording);
-    with_bodies.push_back(*view.recording);
-    by_model.push_back({index, view.run.prediction.hip});
-    by_velocity.push_back({index, ConstantVelocityBaseline(recording)});
-  }
-  const RecordedBodies bodies = BodiesOfGroups(with_bodies);
-  const auto model = CompareHips(recordings, bodies, by_model);
-  if (!model) return section;
-  const auto velocity = CompareHips(recordings, bodies, by_velocity);
-  section.paragraphs = {bodies.empty()
-                            ? "The recordings have no whole bodies, so only onsets are scored."
-                            : "For these scores whole bodies are the first poses, carried by the "
-                              "predicted hips; steps that the model predicts do "
-                              "not move them.",
-                        kGroupMetricsLegend};
+  if (source.propagation.recordings == 0) return section;
   section.tables.push_back(
-      {"the recordings shown here; pushid-crossvalidate scores recordings that were not fitted",
-       GroupMetricsTable({{"predicted", &*model}, {"constant velocity", &*velocity}})});
-  section.tables.push_back(
-      {"how the push travels through them, +- a standard error over recordings",
+      {"how the push travels through the groups shown here, +- a standard error over recordings",
        PropagationTable({{"predicted and measured", &source.propagation}})});
   return section;
 }

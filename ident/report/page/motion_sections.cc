@@ -9,8 +9,8 @@
 #include "datasets/files/number_text.h"
 #include "ident/bodies/animation.h"
 #include "ident/figures/svg.h"
-#include "ident/formations/formation_files.h"
 #include "ident/prediction/evaluation.h"
+#include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"
 #include "ident/prediction/propagation.h"
 #include "ident/report/fit_sections.h"
@@ -351,12 +351,7 @@ ReportSection MotionSection(const ReportSource& source) {
     if (!view.note.empty()) fold.title += " (" + view.note + ")";
     fold.figures.push_back({"motion_" + id, "Measured and predicted motion of " + id + ".",
                             PathFigure(view), PathNumbers(view)});
-    if (const std::optional<Figure> feet = FeetFigure(view.run)) {
-      fold.figures.push_back({"feet_" + id,
-                              "Feet and capture points of " + id +
-                                  ", with the times of landings: within a predicted foot, beside "
-                                  "a recorded one.",
-                              *feet, FeetNumbers(view.run)});
+    if (!PredictedFootprints(recording, prediction).empty()) {
       // The recorded bodies and the predicted pendulums at a few moments, from the side.
       Animation animation = AnimationOf(view);
       animation.title = "from the side";

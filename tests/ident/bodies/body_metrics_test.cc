@@ -144,7 +144,6 @@ TEST(BodyMetricsTest, BothMeansAndTheirErrors) {
   EXPECT_EQ(summary.mean.recordings, 2);
   EXPECT_NEAR(summary.mean.value[kMpjpe], 0.2, 1e-12);
   EXPECT_NEAR(summary.mean.error[kMpjpe], 0.1, 1e-12);  // 0.1414 / sqrt(2)
-  EXPECT_NEAR(summary.frame_weighted.value[kMpjpe], 0.25, 1e-12);
   EXPECT_EQ(summary.by.at("magnitude").at("weak").recordings, 2);
   EXPECT_EQ(summary.by.at("subject").at("s").recordings, 2);
 }
@@ -175,7 +174,6 @@ TEST(BodyReportTest, KeysAreTheAgreedOnesAndJoinThoseOfThePendulum) {
   for (const char* key : {"MPJPE_m", "hipADE_m", "hipFDE_m", "MBLE_m", "FSE_cm", "relative_MPJPE_m",
                           "bound_MPJPE_m"}) {
     EXPECT_TRUE(json["mean"].contains(key)) << key;
-    EXPECT_TRUE(json["frame_weighted"].contains(key)) << key;
     EXPECT_TRUE(json["recordings"][0].contains(key)) << key;
     EXPECT_TRUE(json["baselines"]["rigid"]["mean"].contains(key)) << key;
     EXPECT_TRUE(json["by_setting"]["single"].contains(key)) << key;

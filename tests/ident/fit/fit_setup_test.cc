@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "ident/fit/fit.h"
@@ -15,6 +16,11 @@
 
 namespace pushid {
 namespace {
+
+// All that decides what a fit of given recordings finds.
+nlohmann::ordered_json SettingsJson(const FitOptions& options) {
+  return {{"model", OptionsJson(options)}, {"table", TableJson(options.table)}};
+}
 
 std::string Complaint(const GivenOptions& given) {
   const Result<FitOptions> options = MakeFitOptions(given, nullptr, given);

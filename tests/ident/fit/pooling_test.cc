@@ -59,22 +59,6 @@ TEST(Pooling, SubjectsKeepTheirOwnAndShrinkTogether) {
   EXPECT_LT(last, 1.0);
 }
 
-// Deviations that another fit found, of as many pooled parameters; or nothing.
-TEST(Pooling, DeviationsStartWhereOptionsSay) {
-  const SyntheticOptions study = SmallStudy();
-  const std::vector<PendulumRecording> recordings = TwoFrictions(study);
-  FitOptions options = ExactFit(study);
-  options.table[kMu].pooled = true;
-  options.start_deviations = {{"rough", {0.7}}, {"a stranger", {0.1}}};
-  const FitPoint from = FitProblem(recordings, options).NominalPoint();
-  EXPECT_EQ(from.unit.at("rough"), std::vector<double>({0.7}));
-  EXPECT_EQ(from.unit.at("smooth"), std::vector<double>({0.0}));
-  EXPECT_EQ(from.unit.size(), 2u);
-  options.table[kAx].pooled = true;
-  const FitPoint more = FitProblem(recordings, options).NominalPoint();
-  EXPECT_EQ(more.unit.at("rough"), std::vector<double>({0.0, 0.0}));
-}
-
 // Two settings in which people touch at different distances: what two people share may differ by
 // setting, and every setting has its settling simulations.
 TEST(Pooling, SettingsKeepTheirOwnContact) {

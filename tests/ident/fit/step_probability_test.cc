@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/random.h"
+#include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/model/model_fields.h"
 #include "models/rollout.h"
 
@@ -76,6 +77,14 @@ TEST(StepProbability, SurvivesAFile) {
   auto damaged = JsonOf(*fitted);
   damaged["stepped"] = 101;
   EXPECT_THROW(FromJson<StepProbability>(damaged), std::runtime_error);
+}
+
+// The factor on a support that has a margin: StepMargin solved for it, which makes it positive.
+double FactorAtMargin(double support, double margin) {
+  constexpr double kAgainstNone = 1.0 / 500.0;
+  const double k = 1.0 - kAgainstNone + margin / support;
+  const double root = std::hypot(k, 2.0 * std::sqrt(kAgainstNone));
+  return k > 0.0 ? 0.5 * (k + root) : 2.0 * kAgainstNone / (root - k);
 }
 
 // Supports are positive: whom nothing moves takes no step, whatever the spread.

@@ -88,10 +88,6 @@ TEST(SelfNetworkIo, FilesKeepEverything) {
     EXPECT_EQ(LearnedName(*read), LearnedName(network));
     EXPECT_EQ(read->weights, network.weights);
   }
-  // Written before rods moved.
-  nlohmann::ordered_json old = ToJson(*InitialNetwork({NetworkKind::kMlp, 2}, 1));
-  old.erase("rod");
-  EXPECT_FALSE(LearnedFromJson(old)->rod.moves());
 }
 
 TEST(SelfNetworkIo, DamageIsNamed) {
@@ -106,7 +102,6 @@ TEST(SelfNetworkIo, DamageIsNamed) {
   EXPECT_THROW(LearnedFromJson(broken("hidden", 0)), std::runtime_error);
   EXPECT_THROW(LearnedFromJson(broken("hidden", 3)), std::runtime_error);
   EXPECT_THROW(LearnedFromJson(broken("hidden", 2.7)), std::runtime_error);
-  EXPECT_THROW(LearnedFromJson(broken("rod_input", true)), std::runtime_error);
   EXPECT_THROW(LearnedFromJson(broken("weights", {1.0})), std::runtime_error);
   EXPECT_THROW(LearnedFromJson(broken("kind", "none")), std::runtime_error);
   using Rod = nlohmann::ordered_json;

@@ -90,18 +90,6 @@ TEST(PredictedSteps, FootprintsFromLandingToLiftOff) {
   EXPECT_TRUE(PredictedFootprints(recording, seen).empty());
 }
 
-// At 0.5 m/s the capture point is 0.5 / omega ahead throughout.
-TEST(PredictedSteps, TheCapturePointIsAheadByVelocity) {
-  std::vector<Vector3<double>> hip;
-  for (int t = 0; t < 30; ++t) hip.emplace_back(0.5 * t / 60.0, -0.1, 0.9);
-  const std::vector<Eigen::Vector2d> path = CapturePath(hip, 0.9, 1.0 / 60.0);
-  ASSERT_EQ(path.size(), hip.size());
-  for (size_t t = 0; t < path.size(); ++t) {
-    EXPECT_NEAR(path[t].x(), hip[t].x() + 0.5 / std::sqrt(kGravity / 0.9), 1e-12) << t;
-    EXPECT_NEAR(path[t].y(), -0.1, 1e-12);
-  }
-}
-
 TEST(PredictedSteps, LiftOffErrorsOfThoseWhoStepInBoth) {
   const auto person = [](std::optional<double> predicted, std::optional<double> recorded) {
     StepPrediction p;

@@ -73,10 +73,8 @@ TEST(Propagation, MoversAndBystandersByHand) {
   EXPECT_DOUBLE_EQ(Value(score, kOnsetError), 4.0);
   EXPECT_DOUBLE_EQ(Value(score, kOnsetBias), -2.0);
   EXPECT_DOUBLE_EQ(Value(score, kOnsetErrorReached), 6.0);
-  EXPECT_DOUBLE_EQ(Value(score, kOnsetErrorWithMissed), (2.0 + 6.0 + 29.0) / 3.0);
   EXPECT_DOUBLE_EQ(Value(score, kMissedMovers), 1.0 / 3.0);
   EXPECT_DOUBLE_EQ(Value(score, kFalseMovers), 0.5);
-  EXPECT_DOUBLE_EQ(Value(score, kBystanderFrames), 60.0);
   EXPECT_EQ(score.people[2].onset_measured, 30);
   EXPECT_EQ(score.people[2].onset_predicted, -1);
   const PropagationSummary summary = SummarizePropagation({&score});
@@ -120,16 +118,14 @@ TEST(Propagation, OnsetErrorsOfAModelThatMissesMostMoversAreNotShown) {
   misses.movers = 5.0;
   misses.missed_movers = 4.0;
   misses.figures[kOnsetError] = {1.25, 0.0, 1.0};
-  misses.figures[kOnsetErrorWithMissed] = {33.5, 0.0, 5.0};
+  misses.figures[kMissedMovers] = {0.835, 0.0, 5.0};
   PropagationSummary finds = misses;
   finds.missed_movers = 2.0;
   const std::string text = PropagationText({{"misses", &misses}, {"finds", &finds}});
   EXPECT_EQ(text.find("1.25"), text.rfind("1.25")) << text;
-  EXPECT_TRUE(Contains(text, "33.5"));
+  EXPECT_TRUE(Contains(text, "0.835"));
   EXPECT_TRUE(Contains(text, "most movers are missed"));
   EXPECT_FALSE(Contains(PropagationText({{"finds", &finds}}), "most movers are missed"));
-  EXPECT_EQ(FoldPropagationCells(misses)[0], "-");
-  EXPECT_EQ(FoldPropagationCells(finds)[0], "1.25");
 }
 
 // A wave of 2.5 m/s, people unevenly apart.
@@ -208,12 +204,9 @@ TEST(Propagation, CrossValidationAveragesOverRepeats) {
   EXPECT_DOUBLE_EQ(still.summary.propagation.bystanders, 4.0);
   EXPECT_FALSE(still.summary.propagation.figures[kOnsetError].known());
   ASSERT_EQ(still.folds.size(), 6u);
-  EXPECT_EQ(still.folds[0].propagation.movers, 4.0);
   const nlohmann::ordered_json json = ToJson(still);
   EXPECT_EQ(json["propagation"]["missed_movers_share"]["value"], 1.0);
-  EXPECT_TRUE(json["folds"][0].contains("propagation"));
   const std::string text = CrossValidationText({still});
-  EXPECT_TRUE(Contains(text, "4 of 4"));
   EXPECT_TRUE(Contains(text, "8 of 8"));
 }
 

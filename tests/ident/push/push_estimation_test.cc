@@ -69,30 +69,22 @@ TEST(PushEstimation, RolloutReproducesTheMotionExactly) {
   for (const SyntheticRecording& made : Make(options)) {
     const PendulumRecording recording = Pendulum(made);
     for (int smoothing : {0, 9}) {
-      for (const auto& velocity :
-           {std::optional<InitialVelocity>(), std::optional(InitialVelocity::kZero),
-            std::optional(InitialVelocity::kEstimated)}) {
-        PushEstimationOptions estimation;
-        estimation.smoothing_frames = smoothing;
-        estimation.initial_velocity = velocity;
-        for (const PushWindow& window : {PushWindow{0, 40}, {10, 25}, {40, 41}}) {
-          const EstimatedPush estimated = Estimated(recording, window, estimation);
-          EXPECT_EQ(estimated.push.start_frame, window.start);
-          EXPECT_EQ(estimated.push.EndFrame(), window.end);
-          ExpectReproduced(recording, estimated);
-          if (smoothing == 0) {
-            for (int t = window.start; t <= window.end; ++t) {
-              EXPECT_EQ(estimated.motion[t - window.start].q, recording.states[0][t].q);
-            }
-          }
+      PushEstimationOptions estimation;
+      estimation.smoothing_frames = smoothing;
+      for (const PushWindow& window : {PushWindow{0, 40}, {10, 25}, {40, 41}}) {
+        const EstimatedPush estimated = Estimated(recording, window, estimation);
+        EXPECT_EQ(estimated.push.start_frame, window.start);
+        EXPECT_EQ(estimated.push.EndFrame(), window.end);
+        ExpectReproduced(recording, estimated);
+        for (int t = window.start; smoothing == 0 && t <= window.end; ++t) {
+          EXPECT_EQ(estimated.motion[t - window.start].q, recording.states[0][t].q);
         }
       }
     }
   }
 }
 
-// A window that begins inside a motion: a person who is taken to be at rest there would need
-// kilonewtons to be as fast one frame later.
+// A window that begins inside a motion.
 TEST(PushEstimation, AMovingPersonNeedsNoBlowToMove) {
   SyntheticOptions options;
   options.joint_noise_m = 0.0;
@@ -106,21 +98,7 @@ TEST(PushEstimation, AMovingPersonNeedsNoBlowToMove) {
     const EstimatedPush usual = Estimated(recording, inside, estimation);
     EXPECT_FALSE(FirstRowStandsOut(usual.push.force));
     EXPECT_GT(usual.start_speed, 0.1);
-    estimation.initial_velocity = InitialVelocity::kZero;
-    const EstimatedPush at_rest = Estimated(recording, inside, estimation);
-    EXPECT_TRUE(FirstRowStandsOut(at_rest.push.force));
-    EXPECT_EQ(at_rest.start_speed, 0.0);
-    const auto peak = [](const EstimatedPush& estimated) {
-      double most = 0.0;
-      for (const Vector4<double>& row : estimated.push.force) {
-        most = std::max(most, row.head<2>().norm());
-      }
-      return most;
-    };
-    EXPECT_GT(peak(at_rest), 1000.0);
-    EXPECT_LT(peak(usual), 0.3 * peak(at_rest));
     // Before the push people stand still, and are taken to.
-    estimation.initial_velocity.reset();
     EXPECT_EQ(Estimated(recording, {5, 45}, estimation).start_speed, 0.0);
   }
 }

@@ -162,7 +162,7 @@ TEST(LargeNetworkFit, HoldsAFallToTheFramesBefore) {
   fit.options.passes = 10;
   const auto solution = Unwrapped(FitLargeNetwork(fit));
   ASSERT_EQ(solution.shortened.size(), 1u);
-  EXPECT_EQ(solution.shortened[0].training, 1);
+  EXPECT_EQ(solution.shortened[0].recording, 1);
   EXPECT_GT(solution.shortened[0].status.frame, 1);
   EXPECT_LT(solution.passes.back().cost, solution.passes.front().cost);
 }

@@ -30,15 +30,12 @@ ScoreSummary SampleScores() {
   s.mean.error[kHipAde] = 0.1;
   s.mean.error[kHipFde] = 1.0 / 9.0;
   s.mean.recordings = 2;
-  s.frame_weighted = s.mean;
-  s.frame_weighted.value[kHipAde] = 0.21;
   s.by["magnitude"]["weak"] = s.mean;
   s.by["subject"]["Sa"].value[kHipFde] = 0.5;
   s.by["setting"]["row_1"].recordings = 1;
   s.propagation.recordings = 1;
   s.propagation.movers = 2.5;
   s.propagation.figures[kOnsetError] = {3.0, 0.5, 4.0};
-  s.propagation_by_setting["row_1"] = s.propagation;
   s.without_label["setting"] = 1;
   return s;
 }
@@ -56,7 +53,6 @@ TEST(ScoresJsonTest, EntriesAndMeansReadBack) {
   const auto& propagation = json["propagation"];
   EXPECT_EQ(propagation["onset_error_frames"]["standard_error"], 0.5);
   EXPECT_TRUE(propagation["onset_bias_frames"].is_null());
-  EXPECT_EQ(propagation["by_setting"]["row_1"]["movers"], 2.5);
   EXPECT_EQ(json["without_label"]["setting"], 1);
 }
 
