@@ -4,8 +4,6 @@
 #include "apps/flags/overwrite_flag.h"
 #include "datasets/loading/laboratory_record.h"
 #include "datasets/manifest/recording.h"
-#include "datasets/synthetic/laboratory.h"
-#include "datasets/synthetic/synthetic_clips.h"
 #include "ident/figures/text_table.h"
 #include "ident/fit/fit_setup.h"
 #include "ident/model/model_rollout.h"
@@ -44,18 +42,6 @@ DEFINE_double(
     subject_spread, pushid::SyntheticOptions{}.subject_spread,
     "variation of all parameters between people (standard deviation of the logarithm; 0.1 is "
     "about 10 %)");
-DEFINE_int32(clips, 0,
-             "write motion-capture clips of a walking stick figure instead, for "
-             "pushid-train-generator: so many of each of four actions, and one more "
-             "to test; --frames at 50 Hz, 600 if not given; 0: recordings of pushes");
-DEFINE_int32(turns, 0,
-             "write so many recordings of three people who talk in turns instead, without a push, "
-             "with the truth of who speaks (states.csv); --frames, 300 if not given; 0: recordings "
-             "of pushes");
-DEFINE_int32(laboratory, 0,
-             "write a laboratory's recordings instead, of so many people who are not the fitted "
-             "model (two links that balance late, feet that step): markers (TRC), force platforms, "
-             "a load cell that pulled, and the truth in truth.json");
 DEFINE_uint64(seed, pushid::SyntheticOptions{}.seed, "seed of people, pushes and noise");
 
 namespace {
@@ -131,60 +117,9 @@ void PrintTruth(const IdentifiedModel& truth, const SyntheticOptions& options) {
   }
 }
 
-// Throws where flags beside --clips, --turns or --laboratory (allowed[0], with this value) have no
-// effect.
-void CheckNothingBut(const std::vector<std::string>& allowed, int count) {
-  for (const std::string& name : ChangedFlags()) {
-    if (std::find(allowed.begin(), allowed.end(), name) == allowed.end()) {
-      throw Error{"--" + name + " has no effect with --" + allowed[0] + "; leave it out"};
-    }
-  }
-  Require("out", FLAGS_out, "name the folder to write");
-  OrFail(CheckOutputFolder("out", FLAGS_out));
-  CheckRange(allowed[0].c_str(), count, 1, 1000);
-  CheckRange("frames", FLAGS_frames, 3, 100000);
-}
-
 std::string ManifestFile() { return (std::filesystem::path(FLAGS_out) / "manifest.json").string(); }
 
-int WriteTurns() {
-  SyntheticTurnsOptions options;
-  options.recordings = FLAGS_turns;
-  if (Given("frames")) options.frames = FLAGS_frames;
-  options.seed = FLAGS_seed;
-  CheckNothingBut({"turns", "frames", "seed", "out", "overwrite"}, FLAGS_turns);
-  OrFail(WriteSyntheticTurns(FLAGS_out, options));
-  std::printf("%d recordings of three people who talk in turns: %s\n", options.recordings,
-              ManifestFile().c_str());
-  return kDone;
-}
-
-int WriteClips() {
-  SyntheticClipOptions options;
-  options.clips = FLAGS_clips;
-  if (Given("frames")) options.frames = FLAGS_frames;
-  options.seed = FLAGS_seed;
-  CheckNothingBut({"clips", "frames", "seed", "out", "overwrite"}, FLAGS_clips);
-  OrFail(WriteSyntheticClips(FLAGS_out, options));
-  std::printf("%d clips of each action and one to test: %s\n", options.clips, FLAGS_out.c_str());
-  return kDone;
-}
-
-int WriteOfLaboratory() {
-  LaboratoryOptions options;
-  options.people = FLAGS_laboratory;
-  options.seed = FLAGS_seed;
-  CheckNothingBut({"laboratory", "seed", "out", "overwrite"}, FLAGS_laboratory);
-  OrFail(WriteLaboratoryStudy(FLAGS_out, options));
-  std::printf("%d people, %d pulls each that they withstand and %d after which they step: %s\n",
-              options.people, options.standing, options.stepping, ManifestFile().c_str());
-  return kDone;
-}
-
 int Run() {
-  if (FLAGS_turns != 0) return WriteTurns();
-  if (FLAGS_clips != 0) return WriteClips();
-  if (FLAGS_laboratory != 0) return WriteOfLaboratory();
   SyntheticOptions study = StudyFromCommandLine();
   const IdentifiedModel truth =
       FLAGS_model.empty() ? OrFail(SyntheticTruth(study, FLAGS_set)) : LoadFlaggedModel();

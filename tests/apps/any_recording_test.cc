@@ -11,6 +11,7 @@
 #include "tests/apps/app_fixture.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
+#include "tests/simulators/table_files.h"
 
 namespace pushid {
 namespace {

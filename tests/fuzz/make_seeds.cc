@@ -19,6 +19,7 @@
 #include "tests/datasets/c3d_writer.h"
 #include "tests/datasets/handmade_c3d.h"
 #include "tests/fuzz/model_seeds.h"
+#include "tests/simulators/table_files.h"
 
 namespace {
 

@@ -7,6 +7,7 @@
 #include "datasets/formats/point_motion.h"
 #include "datasets/manifest/joint_mapping.h"
 #include "tests/datasets/c3d_samples.h"
+#include "tests/simulators/table_files.h"
 #include "tests/test_support.h"
 
 namespace pushid {
