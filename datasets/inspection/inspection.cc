@@ -40,9 +40,10 @@ std::string Span(double least, double most) {
 
 // How the ground of a recording moved: in its file, and at the frames.
 void InspectGround(const ManifestRecording& entry, const Recording& recording, Inspection* found) {
-  const bool markers = entry.ground.csv.empty();
-  const std::string kind = markers ? "markers" : NameOf(entry.ground.quantity);
-  const double fps = recording.fps, rate = markers ? fps : GroundOfCsv(entry).rate_hz;
+  const auto tracks = Caught([&] { return GroundOfCsv(entry); });
+  if (!tracks.ok()) return found->Warn(tracks.error().ToString());
+  const std::string kind = NameOf(entry.ground.quantity);
+  const double fps = recording.fps, rate = tracks.value().rate_hz;
   double farthest = 0.0, acceleration = 0.0, tilt = 0.0;
   const std::vector<GroundPose>& poses = recording.ground;
   for (size_t t = 0; t < poses.size(); ++t) {

@@ -79,9 +79,8 @@ using Track = std::vector<Eigen::Vector3d>;
 // One person of a recording from the file that holds their motion.
 struct LoadedPerson {
   RecordedPerson person;
-  double fps = 0.0;              // the manifest's, otherwise the file's
-  double metres_per_unit = 1.0;  // of the file
-  std::string file_hash;         // of the file (and of the mapping, where there is one)
+  double fps = 0.0;       // the manifest's, otherwise the file's
+  std::string file_hash;  // of the file (and of the mapping, where there is one)
 };
 
 // The joints or points of a motion file that a person is read from, whatever its format.
@@ -146,7 +145,6 @@ class PersonLoader {
     SetRate();
     LoadedPerson loaded;
     loaded.fps = fps_;
-    loaded.metres_per_unit = motion_.metres_per_unit;
     loaded.file_hash = mapping_hash_ + motion_.content_hash;
     RecordedPerson& person = loaded.person;
     person.subject_id = entry_.subjects[index_].id;
@@ -484,7 +482,6 @@ Recording Load(const Manifest& manifest, const ManifestRecording& entry, const L
         "the files of its motion",
         entry.manifest, entry.line};
   }
-  GroundReading reading;
   ContentHash hash;  // of the files' hashes, so that contents cannot slide from one into the next
   for (std::size_t i = 0; i < entry.subjects.size(); ++i) {
     LoadedPerson loaded = entry.plates_alone
@@ -492,10 +489,7 @@ Recording Load(const Manifest& manifest, const ManifestRecording& entry, const L
                               : PersonLoader(manifest, entry, i, options, warnings).Load();
     hash.Add(loaded.file_hash);
     RecordedPerson& person = loaded.person;
-    if (i == 0) {
-      recording.fps = loaded.fps;
-      reading = {loaded.metres_per_unit, recording.fps, options.preparation.lowpass_hz};
-    }
+    if (i == 0) recording.fps = loaded.fps;
     if (loaded.fps != recording.fps) {
       throw Error{"the file gives " + Rounded(loaded.fps) + " frames per second, but " +
                       recording.people[0].file + " gives " + Rounded(recording.fps) +
@@ -518,10 +512,10 @@ Recording Load(const Manifest& manifest, const ManifestRecording& entry, const L
   recording.content_hash = hash.Hex();
   OrThrow(PrepareMotion(options.preparation, &recording));
   if (entry.ground.given()) {
-    recording.ground = OrThrow(LoadGround(entry, recording, reading, warnings));
+    recording.ground = OrThrow(LoadGround(entry, recording, options.preparation.lowpass_hz));
   }
   for (const ManifestPlates& plates : entry.plates) {
-    LoadPlates(entry, plates, reading.lowpass_hz, &recording, warnings);
+    LoadPlates(entry, plates, options.preparation.lowpass_hz, &recording, warnings);
   }
   return recording;
 }

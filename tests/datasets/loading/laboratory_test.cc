@@ -201,8 +201,8 @@ INSTANTIATE_TEST_SUITE_P(
             "wrong.csv:1: recording 'S01_00_weak': the column 'tehta' is not known, and would "
             "be read as none; did you mean theta?"),
         std::tuple("no_time", kGround, "x,y\n0,1\n1,2\n2,3\n", "no column called time"),
-        std::tuple("neither", R"({"ground": {"start": 1}})", "", "needs either \"csv\""),
-        std::tuple("two_markers", R"({"ground": {"markers": ["a", "b"]}})", "", "three or more"),
+        std::tuple("no_file", R"({"ground": {"start": 1}})", "", "csv is missing"),
+        std::tuple("markers", R"({"ground": {"markers": ["a", "b", "c"]}})", "", "markers is not"),
         std::tuple("quantity", R"({"ground": {"csv": "wrong.csv", "quantity": "jerk"}})", "",
                    "quantity"),
         std::tuple("unknown_key", R"({"ground": {"csv": "wrong.csv", "star": 1}})", "", "star"),
