@@ -2,7 +2,6 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
 #include "apps/flags/overwrite_flag.h"
-#include "datasets/loading/laboratory_record.h"
 #include "datasets/manifest/recording.h"
 #include "ident/figures/text_table.h"
 #include "ident/fit/fit_setup.h"
@@ -20,14 +19,8 @@ DEFINE_int32(frames, pushid::SyntheticOptions{}.frames, "frames of each recordin
 DEFINE_double(fps, pushid::SyntheticOptions{}.fps, "frames per second");
 // The library's recordings are exact; a user's trial should be as noisy as real ones.
 DEFINE_double(noise, 0.002, "standard deviation of the joints' positions, m");
-DEFINE_string(
-    push_kind, pushid::NameOf(pushid::SyntheticOptions{}.push_kind),
-    "net (only the push's first part, the tail follows), external, or none (with --ground)");
-DEFINE_string(
-    ground, "none",
-    "motion of the ground along x: none, step (within 0.4 s), sine (0.5 Hz), sum_of_sines (five "
-    "of 0.15 to 1.55 Hz), or a CSV file time,x,y,theta,phi (m, rad)");
-DEFINE_bool(plates, false, "also write what force platforms under the feet measure");
+DEFINE_string(push_kind, pushid::NameOf(pushid::SyntheticOptions{}.push_kind),
+              "net (only the push's first part, the tail follows) or external");
 DEFINE_string(stance, pushid::NameOf(pushid::SyntheticOptions{}.model.stance),
               "without --model: behaviour of the synthetic people's feet: slide, steps "
               "(hold, then step) or fixed (hold)");
@@ -48,27 +41,6 @@ namespace {
 
 using namespace pushid;
 
-// Sets the ground of --ground; a file is sampled at the recordings' frames.
-void SetGround(SyntheticOptions* study) {
-  const std::optional<GroundKind> kind = FromName<GroundKind>(FLAGS_ground);
-  if (kind && *kind != GroundKind::kFile) {
-    study->ground = *kind;
-    // Platforms sway in experiments by 20 to 30 mm from peak to peak, five sines together.
-    constexpr double kSwayOfEach = 0.0036;
-    if (*kind == GroundKind::kSumOfSines) study->ground_size_m = kSwayOfEach;
-    if (study->pushes || study->ground != GroundKind::kNone) return;
-    throw Error{"--push_kind=none leaves nothing that moves anybody; add --ground=step"};
-  }
-  study->ground = GroundKind::kFile;
-  ManifestRecording entry;
-  entry.ground.csv = FLAGS_ground;
-  Recording frames;
-  frames.fps = study->fps;
-  frames.people.resize(1);
-  frames.people[0].hip.resize(study->frames);
-  study->ground_poses = OrFail(LoadGround(entry, frames));
-}
-
 // Everything but the truth: the terms of the model that the flags name, not its parameters.
 SyntheticOptions StudyFromCommandLine() {
   Require("out", FLAGS_out, "name the folder to write");
@@ -84,20 +56,15 @@ SyntheticOptions StudyFromCommandLine() {
   TakeInRange("fps", FLAGS_fps, 10, 10000, &study.fps);
   TakeInRange("noise", FLAGS_noise, 0, 0.1, &study.joint_noise_m);
   TakeInRange("subject_spread", FLAGS_subject_spread, 0, 2, &study.subject_spread);
-  study.pushes = FLAGS_push_kind != "none";
-  const std::optional<PushKind> kind =
-      study.pushes ? FromName<PushKind>(FLAGS_push_kind) : PushKind::kExternal;
+  const std::optional<PushKind> kind = FromName<PushKind>(FLAGS_push_kind);
   if (!kind || *kind == PushKind::kNetWithoutFriction) {
-    throw Error{"--push_kind is '" + FLAGS_push_kind +
-                "'; it must be net or external, or none with --ground"};
+    throw Error{"--push_kind is '" + FLAGS_push_kind + "'; it must be net or external"};
   }
   OrFail(ParseName("--stance", FLAGS_stance, &study.model.stance));
   OrFail(ParseName("--delay", FLAGS_delay, &study.model.delay));
   OrFail(ParseName("--truth_noise", FLAGS_truth_noise, &study.model.process_noise));
   study.push_kind = *kind;
   study.seed = FLAGS_seed;
-  study.plates = FLAGS_plates;
-  SetGround(&study);
   return study;
 }
 

@@ -296,13 +296,9 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
       made.scene.dt = 1.0 / options.fps;
       PlaceRow(options, row, &motion, &spread, &made);
       if (options.ground != GroundKind::kNone) {
+        const double size = r % 2 == 0 ? options.ground_size_m : -options.ground_size_m;
         made.scene.ground = GroundThrough(
-            options.ground == GroundKind::kFile
-                ? options.ground_poses
-                : SyntheticGround(options.ground,
-                                  r % 2 == 0 ? options.ground_size_m : -options.ground_size_m,
-                                  options.frames, made.scene.dt, Eigen::Vector2d::UnitX()),
-            made.scene.dt);
+            SyntheticGround(options.ground, size, options.frames, made.scene.dt), made.scene.dt);
       }
       std::vector<Vector4<double>> rows =
           DrawPush(options, made.scene.people[0], strength.acceleration, &motion);
@@ -346,8 +342,7 @@ std::vector<Recording> Recordings(const std::vector<SyntheticRecording>& synthet
   return recordings;
 }
 
-std::vector<GroundPose> SyntheticGround(GroundKind kind, double size, int frames, double dt,
-                                        const Eigen::Vector2d& along) {
+std::vector<GroundPose> SyntheticGround(GroundKind kind, double size, int frames, double dt) {
   std::vector<GroundPose> poses(frames, GroundPose::Zero());
   for (int t = 0; t < frames; ++t) {
     const double s = t * dt;
@@ -357,7 +352,7 @@ std::vector<GroundPose> SyntheticGround(GroundKind kind, double size, int frames
     if (kind == GroundKind::kSumOfSines) {
       for (double f : kSines) shift += Smooth(s) * std::sin(2.0 * M_PI * f * s);
     }
-    poses[t].head<2>() = size * shift * along;
+    poses[t].x() = size * shift;
   }
   return poses;
 }
@@ -469,43 +464,9 @@ BvhMotion Motion(const SyntheticRecording& made, int n) {
   return motion;
 }
 
-std::string GroundFile(const Recording& recording) { return "ground/" + recording.id + ".csv"; }
 // The name of a person's files: in a row one for each.
 std::string OfPerson(const Recording& recording, size_t n) {
   return recording.id + (recording.people.size() > 1 ? StrCat("_", n) : "");
-}
-std::string PlatesFile(const Recording& recording, size_t n) {
-  return "plates/" + OfPerson(recording, n) + ".csv";
-}
-
-// Writes a table of a row for each frame: its time, then the numbers.
-template <typename Row>
-void WriteTimed(const std::string& path, const std::string& names, const Recording& recording,
-                const Row& row) {
-  OrThrow(MakeFolderOf(path));
-  std::string text = "time," + names + "\n";
-  for (int t = 0; t < recording.num_frames(); ++t) {
-    text += DoubleText(t / recording.fps);
-    for (double value : row(t)) text += "," + DoubleText(value);
-    text += "\n";
-  }
-  OrThrow(WriteFileAtomically(path, text));
-}
-
-// Writes the ground's and the platforms' files, where the recording has them.
-void WriteLaboratory(const std::string& folder, const Recording& recording) {
-  if (!recording.ground.empty()) {
-    WriteTimed(folder + "/" + GroundFile(recording), "x,y,theta,phi", recording,
-               [&](int t) { return recording.ground[t]; });
-  }
-  for (size_t n = 0; n < recording.people.size(); ++n) {
-    const std::vector<PlateSample>& plates = recording.people[n].plates;
-    if (plates.empty()) continue;
-    WriteTimed(folder + "/" + PlatesFile(recording, n), "fx,fy,fz,px,py", recording, [&](int t) {
-      const PlateSample& s = plates[t];
-      return std::array{s.force[0], s.force[1], s.force[2], s.centre[0], s.centre[1]};
-    });
-  }
 }
 
 ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::string>& bvh,
@@ -520,17 +481,6 @@ ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::s
   entry.joints.hip = JointReference{joints[kHipJoint].name};
   entry.joints.left_ankle = JointReference{joints[kLeftAnkleJoint].name};
   entry.joints.right_ankle = JointReference{joints[kRightAnkleJoint].name};
-  if (made.scene.ground.moves()) (*entry.json)["ground"] = {{"csv", GroundFile(recording)}};
-  for (size_t n = 0; n < recording.people.size(); ++n) {
-    if (recording.people[n].plates.empty()) continue;
-    nlohmann::ordered_json plates = {{"use", "measure"}, {"file", PlatesFile(recording, n)}};
-    if (recording.people.size() == 1) {
-      (*entry.json)["force_plates"] = plates;
-    } else {
-      plates["person"] = n;
-      (*entry.json)["force_plates"].push_back(plates);
-    }
-  }
   if (recording.pushes.empty()) return entry;
   const int start = recording.pushes[0].start_frame;
   if (start == 0) entry.push_csv = csv;
@@ -568,7 +518,6 @@ MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOp
         bvh.push_back("bvh/" + OfPerson(made.recording, n) + ".bvh");
         OrThrow(WriteBvh(folder + "/" + bvh.back(), Motion(made, n)));
       }
-      WriteLaboratory(folder, made.recording);
       if (!made.recording.pushes.empty()) {
         OrThrow(WritePushCsv(folder + "/" + csv, made.recording.pushes[0].force));
       }

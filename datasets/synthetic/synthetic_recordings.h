@@ -90,19 +90,10 @@ enum class GroundKind {
   kStep,        // a shift within 0.4 s, from 0.3 s on
   kSine,        // of 0.5 Hz, from rest within a second
   kSumOfSines,  // of 0.15, 0.35, 0.65, 1.05 and 1.55 Hz, from rest within a second
-  kFile         // SyntheticOptions::ground_poses
 };
-constexpr EnumNames<GroundKind, 5> Names(GroundKind) {
-  return {{{"none", GroundKind::kNone},
-           {"step", GroundKind::kStep},
-           {"sine", GroundKind::kSine},
-           {"sum_of_sines", GroundKind::kSumOfSines},
-           {"file", GroundKind::kFile}}};
-}
 
-// Poses of the ground; size: m, of the step or of each sine; along: horizontal, of length 1.
-std::vector<GroundPose> SyntheticGround(GroundKind kind, double size, int frames, double dt,
-                                        const Eigen::Vector2d& along);
+// Poses of the ground; size: m, of the step or of each sine.
+std::vector<GroundPose> SyntheticGround(GroundKind kind, double size, int frames, double dt);
 
 struct SyntheticOptions {
   // The truth. model.push decides what a `net` push is: with kAdded, a force beside all others;
@@ -125,10 +116,9 @@ struct SyntheticOptions {
   double min_rod_m = 0.82, max_rod_m = 1.02;
   double lean_sigma_rad = 0.02;  // of both angles at frame 0, about upright
 
-  // Ground that moves, and force platforms that move with it and err by so much.
+  // Ground that moves, and force platforms that move with it and err by so much; in memory alone.
   GroundKind ground = GroundKind::kNone;
   double ground_size_m = 0.03;
-  std::vector<GroundPose> ground_poses = {};  // of kFile, one per frame
   bool plates = false;
   double plate_noise_m = 0.002, plate_noise_n = 2.0;  // of the centre of pressure, and of forces
 
@@ -171,7 +161,7 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
 std::vector<Recording> Recordings(const std::vector<SyntheticRecording>& synthetic);
 
 // Writes folder/manifest.json, folder/bvh/<id>.bvh (mm; <id>_<n>.bvh for person n of a row) and
-// folder/push/<id>.csv, making the folders. The manifest's key `synthetic` holds seed, noise and
+// folder/push/<id>.csv, making the folders; ground and platforms are not written. The manifest's key `synthetic` holds seed, noise and
 // the true parameters by name.
 MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOptions& options,
                                     const std::vector<SyntheticRecording>& recordings);

@@ -9,6 +9,7 @@
 #include "datasets/loading/load_recordings.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "datasets/synthetic/synthetic_recordings.h"
+#include "tests/simulators/platform_files.h"
 #include "tests/test_support.h"
 
 namespace pushid {
@@ -42,7 +43,7 @@ class LaboratoryTest : public TempDirTest {
   Result<std::vector<Recording>> Load(const SyntheticOptions& options,
                                       const std::function<void(Json*)>& change = nullptr) {
     made_ = MakeSyntheticRecordings(options).value();
-    EXPECT_FALSE(WriteSyntheticRecordings(folder_.string(), options, made_));
+    EXPECT_FALSE(WriteOnPlatforms(folder_.string(), options, made_));
     if (change) {
       Json json = Json::parse(ReadText(Path("manifest.json")));
       change(&json["recordings"][0]);
@@ -137,8 +138,7 @@ TEST_F(LaboratoryTest, FilesHaveTheirOwnClocks) {
   const SyntheticOptions options = OnPlatform(GroundKind::kSine);
   const auto loaded = Load(options, [&](Json* entry) {
     std::string text = "time,x,theta\n";
-    const auto poses = SyntheticGround(GroundKind::kSine, options.ground_size_m, 400, 1.0 / 250.0,
-                                       Eigen::Vector2d::UnitX());
+    const auto poses = SyntheticGround(GroundKind::kSine, options.ground_size_m, 400, 1.0 / 250.0);
     for (int i = -50; i < 400; ++i) {
       const double x = i < 0 ? 0.0 : poses[i][0];
       text += std::to_string(3.0 + i / 250.0) + "," + std::to_string(x) + ",0\n";

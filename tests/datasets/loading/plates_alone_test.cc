@@ -13,6 +13,7 @@
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
+#include "tests/simulators/platform_files.h"
 #include "tests/test_support.h"
 
 namespace pushid {
@@ -212,7 +213,7 @@ class PlatesOfPeople : public TempDirTest {
     options.plates = true;
     options.plate_noise_m = options.plate_noise_n = 0.0;
     made_ = MakeSyntheticRecordings(options).value();
-    EXPECT_FALSE(WriteSyntheticRecordings(folder_.string(), options, made_));
+    EXPECT_FALSE(WriteOnPlatforms(folder_.string(), options, made_));
     Json json = Json::parse(ReadText(Path("manifest.json")));
     if (change) change(&json["recordings"][0]);
     WriteText("manifest.json", json.dump());
