@@ -40,8 +40,8 @@ inline constexpr double kGroundAtRest = 0.02;
 double GroundSpeedAtFirst(const std::vector<GroundPose>& poses, double dt);
 
 // Poses at the recording's frames (its fps, its number of frames), counted from frame 0, with the
-// low-pass that the motion gets (Hz; 0: none). Errors: those of the file, a column that is misspelt,
-// a record that ends early or begins late, ground that does not start at rest.
+// low-pass that the motion gets (Hz; 0: none). Errors: those of the file, a column that is
+// misspelt, a record that ends early or begins late, ground that does not start at rest.
 Result<std::vector<GroundPose>> LoadGround(const ManifestRecording& entry,
                                            const Recording& recording, double lowpass_hz = 0.0);
 

@@ -161,8 +161,8 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
 std::vector<Recording> Recordings(const std::vector<SyntheticRecording>& synthetic);
 
 // Writes folder/manifest.json, folder/bvh/<id>.bvh (mm; <id>_<n>.bvh for person n of a row) and
-// folder/push/<id>.csv, making the folders; ground and platforms are not written. The manifest's key `synthetic` holds seed, noise and
-// the true parameters by name.
+// folder/push/<id>.csv, making the folders; ground and platforms are not written. The manifest's
+// key `synthetic` holds seed, noise and the true parameters by name.
 MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOptions& options,
                                     const std::vector<SyntheticRecording>& recordings);
 

@@ -1,5 +1,5 @@
-// People of another model, tests/studies/laboratory.sh: data whose truth is not the fitted model. What is found of
-// it, what is not, and that the report says so.
+// People of another model, tests/studies/laboratory.sh: data whose truth is not the fitted model.
+// What is found of it, what is not, and that the report says so.
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -22,9 +22,8 @@ class LaboratoryApp : public TempDirTest {
 
 TEST_F(LaboratoryApp, FindsTheStiffnessAndSaysThatTheModelIsWrong) {
   setenv("PUSHID_BIN", PUSHID_BIN_DIR, 1);
-  const AppRun run =
-      RunProgram("/bin/bash", {std::string(PUSHID_SOURCE_DIR) + "/tests/studies/laboratory.sh",
-                               Path("lab")});
+  const AppRun run = RunProgram(
+      "/bin/bash", {std::string(PUSHID_SOURCE_DIR) + "/tests/studies/laboratory.sh", Path("lab")});
   unsetenv("PUSHID_BIN");
   ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
   const auto truth = ReadJsonDocument(Path("lab/truth.json")).value().content["synthetic"]["truth"];
