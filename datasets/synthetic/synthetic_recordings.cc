@@ -141,35 +141,6 @@ RecordedPerson ObservePerson(const SyntheticOptions& options, const SyntheticRec
   return person;
 }
 
-// Measurements of platforms under the person, which move with the ground.
-std::vector<PlateSample> ObservePlates(const SyntheticOptions& options,
-                                       const SyntheticRecording& made, int n, Random* noise) {
-  std::vector<PlateSample> plates;
-  const Scene& scene = made.scene;
-  const BodyOf<double> body = DynamicBody(options.model, scene.people[n].body, made.parameters[n],
-                                          options.model.stance == Stance::kFixed);
-  for (int t = 0; t < options.frames; ++t) {
-    const int at = std::min(t, options.frames - 2);  // the last frame has no step
-    const PendulumState<double>& state = made.path.At(at, n);
-    const GroundStep& ground = scene.ground.StepAt(at);
-    const Vector4<double> felt =
-        (made.path.At(at + 1, n).qd - state.qd) / scene.dt + ground.acceleration;
-    const ReactionForce<double> force(body, Angles<double>(state.q), state.qd, felt, ground.gravity,
-                                      PushForceAt(scene, n, at));
-    const GroundReactionOf<double> reaction = ReactionOn(force, body.cart_height, state.q);
-    const auto err = [&](double sigma) { return sigma * noise->Normal(); };
-    PlateSample sample;
-    sample.force = {reaction[0] + err(options.plate_noise_n),
-                    reaction[1] + err(options.plate_noise_n),
-                    force.vertical + err(options.plate_noise_n)};
-    sample.centre = {reaction[2] + err(options.plate_noise_m),
-                     reaction[3] + err(options.plate_noise_m), 0.0};
-    sample.weight = 1.0;
-    plates.push_back(sample);
-  }
-  return plates;
-}
-
 std::vector<Subject> DrawSubjects(const SyntheticOptions& options, Random* people, Random* spread) {
   std::vector<Subject> subjects;
   for (int s = 0; s < options.subjects; ++s) {
@@ -204,16 +175,6 @@ void PlaceRow(const SyntheticOptions& options, const std::vector<const Subject*>
     person.start.feet.apart = 2.0 * subject->skeleton.HalfStance().head<2>();
     made->scene.people.push_back(person);
   }
-}
-
-constexpr double kStepStart = 0.3, kStepSeconds = 0.4;       // s
-constexpr double kSine = 0.5;                                // Hz
-constexpr double kSines[] = {0.15, 0.35, 0.65, 1.05, 1.55};  // Hz
-
-// A rise from 0 to 1 with velocity and acceleration zero at both ends (minimum jerk).
-double Smooth(double u) {
-  const double v = std::clamp(u, 0.0, 1.0);
-  return v * v * v * (10.0 - 15.0 * v + 6.0 * v * v);
 }
 
 // Everything is quoted as a fraction of the rod: pelvis centre to ankles, about 0.52 of a person's
@@ -280,7 +241,7 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
   Random people(root.Fork()), motion(root.Fork()), spread(root.Fork());
   const uint64_t own_noise = root.Fork();
   Random noise(options.noise_seed != 0 ? options.noise_seed : own_noise);
-  Random driving(root.Fork()), on_plates(root.Fork());
+  Random driving(root.Fork());
 
   const std::vector<Subject> subjects = DrawSubjects(options, &people, &spread);
   std::vector<SyntheticRecording> result;
@@ -295,10 +256,8 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
       SyntheticRecording made;
       made.scene.dt = 1.0 / options.fps;
       PlaceRow(options, row, &motion, &spread, &made);
-      if (options.ground != GroundKind::kNone) {
-        const double size = r % 2 == 0 ? options.ground_size_m : -options.ground_size_m;
-        made.scene.ground = GroundThrough(
-            SyntheticGround(options.ground, size, options.frames, made.scene.dt), made.scene.dt);
+      if (!options.ground.empty()) {
+        made.scene.ground = GroundThrough(options.ground, made.scene.dt);
       }
       std::vector<Vector4<double>> rows =
           DrawPush(options, made.scene.people[0], strength.acceleration, &motion);
@@ -318,8 +277,6 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
       Recording& recording = made.recording;
       for (int n = 0; n < options.people_in_row; ++n) {
         recording.people.push_back(ObservePerson(options, made, *row[n], n, &noise));
-        if (!options.plates) continue;
-        recording.people[n].plates = ObservePlates(options, made, n, &on_plates);
       }
       recording.ground = made.scene.ground.poses;
       recording.id = id;
@@ -340,21 +297,6 @@ std::vector<Recording> Recordings(const std::vector<SyntheticRecording>& synthet
   std::vector<Recording> recordings;
   for (const SyntheticRecording& made : synthetic) recordings.push_back(made.recording);
   return recordings;
-}
-
-std::vector<GroundPose> SyntheticGround(GroundKind kind, double size, int frames, double dt) {
-  std::vector<GroundPose> poses(frames, GroundPose::Zero());
-  for (int t = 0; t < frames; ++t) {
-    const double s = t * dt;
-    double shift = 0.0;
-    if (kind == GroundKind::kStep) shift = Smooth((s - kStepStart) / kStepSeconds);
-    if (kind == GroundKind::kSine) shift = Smooth(s) * std::sin(2.0 * M_PI * kSine * s);
-    if (kind == GroundKind::kSumOfSines) {
-      for (double f : kSines) shift += Smooth(s) * std::sin(2.0 * M_PI * f * s);
-    }
-    poses[t].x() = size * shift;
-  }
-  return poses;
 }
 
 ParameterSet<double> PublishedTailParameters() {

@@ -18,13 +18,12 @@ class PlatesAloneApp : public AppTest {
  protected:
   // Three people on ground that sways, whom plates alone measure.
   std::string Simulated() {
-    SyntheticOptions options;
+    PlatformOptions options;
     options.subjects = 3;
     options.recordings_per_subject = 2;
     options.model.stance = Stance::kFixed;
-    options.ground = GroundKind::kSumOfSines;
-    options.ground_size_m = 0.0036;
-    options.plates = true;
+    options.kind = GroundKind::kSumOfSines;
+    options.size_m = 0.0036;
     options.pushes = false;
     options.push_kind = PushKind::kExternal;
     options.frames = 1000;
@@ -33,7 +32,7 @@ class PlatesAloneApp : public AppTest {
     const auto truth = Unwrapped(SyntheticTruth(options, "Kp_theta=1600,Kd_theta=400"));
     options.model = truth.options;  // off the priors
     options.parameters = truth.parameters;
-    const auto made = Unwrapped(MakeSyntheticRecordings(options));
+    const auto made = Unwrapped(MakeOnPlatforms(options));
     EXPECT_FALSE(WriteOnPlatforms(Path("swaying"), options, made));
     nlohmann::ordered_json json = Json(Path("swaying/manifest.json"));
     truth_ = json["synthetic"]["truth"];
