@@ -1,5 +1,5 @@
 // apps: predictions in Python: from the first frame and the push, from frames as they come, as
-// whole bodies, on formations, as most probable paths, and of people who stand.
+// whole bodies, on formations, and of people who stand.
 #include <algorithm>
 #include <array>
 
@@ -7,7 +7,6 @@
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/bodies/restoration_files.h"
-#include "ident/forecasts/most_probable_path.h"
 #include "ident/formations/formation_run.h"
 #include "ident/prediction/frequency_response.h"
 #include "ident/prediction/futures.h"
@@ -305,25 +304,6 @@ py::dict OnFormation(const Model& model, const std::string& shape, int people, d
   return dict;
 }
 
-py::dict Between(const Model& model, const std::string& start, const std::string& end, int frames,
-                 double fps, double mass, double rod) {
-  const PathEnd from = Unwrapped(ParsePathEnd("start", start, true), Fault::kUsage);
-  const PathEnd to = Unwrapped(ParsePathEnd("end", end, false), Fault::kUsage);
-  if (!(mass > 0.0) || !(rod > 0.0) || !(fps > 0.0)) {
-    Raise(Fault::kUsage, Error{"mass, rod and fps must be above 0"});
-  }
-  const IdentifiedModel identified = IdentifiedOf(model);
-  auto found = WithoutGil([&] {
-    return PathBetween(identified, {mass, rod, 0.0}, fps, from, to, frames);
-  });
-  const ProbablePath path = Unwrapped(std::move(found), Fault::kUsage);
-  const auto noise = [&](int t, int n) { return path.noise.At(t, n); };
-  return py::dict("states"_a = StatesOf(path.states, 1),
-                  "noise"_a = TableArray(path.states.num_frames(), 1, 4, noise),
-                  "action"_a = path.action(), "noise_action"_a = path.noise_action,
-                  "divergence_action"_a = path.divergence_action);
-}
-
 // One number of each bin.
 template <typename Value>
 Array Column(const std::vector<FrequencyBin>& bins, Value value) {
@@ -390,7 +370,6 @@ py::dict LoopDict(const Model& model, double mass, double rod) {
 void BindPredictions(py::module_* module) {
   module->def("predict", &PredictOn);
   module->def("simulate_formation", &OnFormation);
-  module->def("path_between", &Between);
   module->def("frequency_response", &ResponsesOf);
   module->def("loop", &LoopDict);
   py::class_<Online>(*module, "Online")

@@ -84,16 +84,6 @@ def test_a_push_unlike_the_fitted_ones_is_warned_of(made, result):
             pass
 
 
-def test_most_probable_paths(made, result, noisy):
-    near, far = (noisy.path_between({"xd": 0.5}, {"x": x, "xd": 0}, frames=60) for x in (0.3, 3.0))
-    assert near["states"].shape == (60, 1, 8) and near["noise"].shape == (60, 1, 4)
-    assert near["action"] < far["action"] and near["states"][-1, 0, 0] == pytest.approx(0.3)
-    with pytest.raises(pushid.UsageError, match="process noise"):
-        result.path_between({"xd": 0.5}, {"x": 0.3}, frames=60)
-    with pytest.raises(pushid.UsageError, match="end"):
-        noisy.path_between({"xd": 0.5}, {"nowhere": 1})
-
-
 @pytest.mark.filterwarnings("ignore:the model was fitted without interaction")
 def test_formations(result):
     line = pushid.simulate_formation(result, "line", 4, push=60.0, onset_bands=True)
@@ -143,8 +133,6 @@ def test_pictures(made, result, monkeypatch):
     low, high = result["mu"].interval
     ends = [end for line in one.lines for end in line.get_xdata()]
     assert any(end == pytest.approx(low) for end in ends) and any(end == pytest.approx(high) for end in ends)
-    axes = result.plot_motion(made[0][0], observed=20)
-    assert len(axes.lines) == 2 and axes.collections  # measured, predicted, the band
     result.profile("mu")
     axes = result.plot("profiles", panel="mu")
     assert axes.lines[0].get_ydata().min() == pytest.approx(0.0, abs=0.01)
@@ -161,8 +149,6 @@ def test_pictures(made, result, monkeypatch):
         result.plot("none")
     with pytest.raises(ValueError, match="panels"):
         result.plot("forest", axes=axes)
-    axes = pushid.simulate_formation(result, "line", 4, push=60.0, onset_bands=True).plot()
-    assert axes.images[0].get_array().shape == (4, 241) and whole(axes)
 
 
 def on_oscillating_ground(seconds=40.0, fps=50.0):
