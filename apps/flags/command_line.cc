@@ -288,20 +288,6 @@ void CheckRange(const char* flag, double value, double lowest, double highest) {
   throw Error{text.str()};
 }
 
-void TakeLength(const std::string& unit, double scale, std::optional<LengthUnit>* length_unit,
-                std::optional<double>* length_scale) {
-  if (scale != 0.0 && !unit.empty()) {
-    throw Error{"--length_scale is given together with --length_unit; give one of them"};
-  }
-  if (scale != 0.0) {
-    const std::string problem = LengthScaleProblem(scale);
-    if (!problem.empty()) throw Error{"--length_scale " + problem};
-    *length_scale = scale;
-  }
-  if (unit.empty()) return;
-  OrFail(ParseName("--length_unit", unit, &length_unit->emplace()));
-}
-
 std::map<std::string, std::string> EffectiveFlags() {
   std::map<std::string, std::string> flags;
   for (const FlagInfo& flag : OwnFlags()) {

@@ -34,6 +34,9 @@ std::string NumberProblem(std::string_view token);
 // `text` in single quotes, shortened and with unprintable bytes replaced, fit for a message.
 std::string Quoted(std::string_view text);
 
+// A value as a shell takes it, in a command that is printed: quoted where it needs that.
+std::string ShellQuoted(const std::string& value);
+
 // Texts, characters and whole numbers one after the other.
 template <typename... Parts>
 std::string StrCat(const Parts&... parts) {

@@ -108,6 +108,9 @@ std::vector<int> CopyOf(const std::vector<PendulumRecording>& recordings);
 // Findings of all recordings, copies among them.
 std::vector<Finding> FindingsOf(const std::vector<PendulumRecording>& recordings);
 
+// Warnings of FacingFindings, as recordings are loaded.
+Warnings FacingWarnings(const std::vector<Recording>& recordings);
+
 // The findings that a fit, a prediction and pushid-push report.
 std::vector<Finding> FitFindings(std::vector<Finding> findings);
 

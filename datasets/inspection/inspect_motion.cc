@@ -65,16 +65,6 @@ std::string Degrees(double radians) {
   return StrCat(std::lround(radians * 180.0 / M_PI), " degrees");
 }
 
-// Frames in which all of the chosen points were seen have their mean, others NaN.
-Track MeanOf(const PointMotion& motion, const std::vector<int>& chosen) {
-  Track mean(motion.num_frames(), Eigen::Vector3d::Zero());
-  for (int index : chosen) {
-    for (int t = 0; t < motion.num_frames(); ++t) mean[t] += motion.positions[index][t];
-  }
-  for (Eigen::Vector3d& position : mean) position /= static_cast<double>(chosen.size());
-  return mean;
-}
-
 // Frames on end in which one of the chosen points was not seen.
 int LongestHidden(const PointMotion& motion, const std::vector<int>& chosen) {
   int longest = 0;
@@ -146,9 +136,9 @@ class MotionInspector {
   }
 
   void Body(const PendulumJoints& joints) {
-    hip_ = MeanOf(motion_, joints.hip);
-    left_ = MeanOf(motion_, joints.left_ankle);
-    right_ = MeanOf(motion_, joints.right_ankle);
+    hip_ = MeanTrack(motion_.positions, joints.hip);
+    left_ = MeanTrack(motion_.positions, joints.left_ankle);
+    right_ = MeanTrack(motion_.positions, joints.right_ankle);
     const int frames = motion_.num_frames();
     const auto seen = [this](int t) { return (hip_[t] + left_[t] + right_[t]).allFinite(); };
     while (first_ < frames && !seen(first_)) ++first_;
@@ -183,7 +173,7 @@ class MotionInspector {
       const std::vector<int>& chosen = joints.*row.joints;
       const bool lost = chosen.empty() || LongestHidden(motion_, chosen) > gap;
       if (!row.required && lost) continue;
-      person.*row.track = MeanOf(motion_, chosen);
+      person.*row.track = MeanTrack(motion_.positions, chosen);
       for (Eigen::Vector3d& position : person.*row.track) position = to_project * position;
     }
     found_.steps = FindSteps(person, motion_.rate_hz);
@@ -252,8 +242,9 @@ class MotionInspector {
     up[axis] = rod_[axis] < 0.0 ? -1.0 : 1.0;
     if (pelvis_.known()) {
       *by = "the pelvis";
-      to_the_left_ = Across(
-          MeanOf(motion_, pelvis_.left)[first_] - MeanOf(motion_, pelvis_.right)[first_], up);
+      to_the_left_ = Across(MeanTrack(motion_.positions, pelvis_.left)[first_] -
+                                MeanTrack(motion_.positions, pelvis_.right)[first_],
+                            up);
       if (!to_the_left_.isZero()) return "";
     }
     *by = "the ankles";

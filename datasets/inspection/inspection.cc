@@ -495,15 +495,6 @@ std::vector<std::string> MassTexts(const std::vector<PendulumRecording>& recordi
   return texts;
 }
 
-std::string ShellQuoted(const std::string& value) {
-  constexpr char kPlain[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=.,:/@%[]";
-  if (!value.empty() && value.find_first_not_of(kPlain) == std::string::npos) return value;
-  std::string quoted = "'";
-  for (const char c : value) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 std::string InspectionText(const Inspection& inspection) {
   std::string text = inspection.path + ": " + inspection.format + "\n";
   for (const auto& [what, said] : inspection.facts) {

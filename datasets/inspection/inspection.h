@@ -58,9 +58,6 @@ Result<Inspection> Inspect(const std::string& path, const ColumnMapping& mapping
 // one person. "S01 weighs 62.7 to 70 kg: ..."
 std::vector<std::string> MassTexts(const std::vector<PendulumRecording>& recordings);
 
-// A value as a shell takes it, in a command that is printed: quoted where it needs that.
-std::string ShellQuoted(const std::string& value);
-
 // "file: format", the facts and the warnings, one a line.
 std::string InspectionText(const Inspection& inspection);
 

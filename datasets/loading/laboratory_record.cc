@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
@@ -219,16 +220,21 @@ void CheckWeight(const std::string& file, const RecordedPerson& person) {
               file};
 }
 
-double MeanDistance(const std::vector<PlateSample>& plates, const RecordedPerson& person) {
-  double sum = 0.0;
-  int seen = 0;
+// Distances of the centre of pressure from the middle of a person's ankles, m, where it is known.
+std::vector<double> Distances(const std::vector<PlateSample>& plates,
+                              const RecordedPerson& person) {
+  std::vector<double> distances;
   for (size_t t = 0; t < plates.size() && t < person.left_ankle.size(); ++t) {
     if (plates[t].weight <= 0.0) continue;
-    sum +=
-        (plates[t].centre - 0.5 * (person.left_ankle[t] + person.right_ankle[t])).head<2>().norm();
-    ++seen;
+    const Eigen::Vector3d feet = 0.5 * (person.left_ankle[t] + person.right_ankle[t]);
+    distances.push_back((plates[t].centre - feet).head<2>().norm());
   }
-  return sum / std::max(1, seen);
+  return distances;
+}
+
+double MeanDistance(const std::vector<PlateSample>& plates, const RecordedPerson& person) {
+  const std::vector<double> all = Distances(plates, person);
+  return std::accumulate(all.begin(), all.end(), 0.0) / std::max<double>(1.0, all.size());
 }
 
 // In a file of several people, the named one must stand nearest to where platforms are pressed.
@@ -249,14 +255,10 @@ void CheckPerson(const std::string& file, const Recording& recording, int named)
 }
 
 void CheckCentre(const std::string& file, const RecordedPerson& person) {
-  int far = 0, seen = 0;
-  for (size_t t = 0; t < person.plates.size() && t < person.left_ankle.size(); ++t) {
-    if (person.plates[t].weight <= 0.0) continue;
-    const Eigen::Vector3d feet = 0.5 * (person.left_ankle[t] + person.right_ankle[t]);
-    far += (person.plates[t].centre - feet).head<2>().norm() > kFarFromFeet;
-    ++seen;
-  }
-  if (2 * far <= seen) return;
+  const std::vector<double> all = Distances(person.plates, person);
+  const auto far = std::count_if(all.begin(), all.end(),
+                                 [](double distance) { return distance > kFarFromFeet; });
+  if (2 * far <= static_cast<long>(all.size())) return;
   throw Error{"the centre of pressure is " + Rounded(MeanDistance(person.plates, person), 2) +
                   " m from the ankles on average: platforms and markers must share their origin "
                   "and axes (up, forward), and centres must be in metres",

@@ -136,7 +136,7 @@ class PersonLoader {
     joints_ = Overlaid(entry_.subjects[index_].joints, Overlaid(entry_.joints, mapping_.joints));
     const bool crowd = HoldsCrowd(entry_.motion_format) ||
                        (entry_.motion_format == MotionFormat::kCsv && IsCrowdCsv(path_));
-    if (crowd && !joints_.hip) throw Error{kCrowdIsNoRecording, path_};
+    if (crowd && !joints_.Of(kBodyHip)) throw Error{kCrowdIsNoRecording, path_};
     if (HasSkeleton(entry_.motion_format)) {
       ReadSkeleton();
     } else {
@@ -185,7 +185,8 @@ class PersonLoader {
     motion_.metres_per_unit = MetresGiven().value_or(motion_.metres_per_unit);
     BvhPositionOptions options;
     options.metres_per_unit = motion_.metres_per_unit;
-    options.keep_values = options_.keep_all_joints;
+    options.first_kept = entry_.first_frame;
+    options.kept_rows = options_.keep_all_joints ? 1 : 0;
     options.choose_joints = [this](const BvhSkeleton& skeleton) {
       return Choose(skeleton.Names(), &skeleton);
     };
@@ -198,12 +199,8 @@ class PersonLoader {
       motion_.parents.push_back(bvh.skeleton.joints[joint].parent);
     }
     if (options_.keep_all_joints) {
-      const std::ptrdiff_t channels = bvh.skeleton.num_channels();
-      const auto rows = static_cast<std::ptrdiff_t>(bvh.values.size()) / channels;
-      const auto first =
-          bvh.values.begin() + channels * std::min<std::ptrdiff_t>(entry_.first_frame, rows - 1);
       motion_.skeleton =
-          FileSkeleton{std::move(bvh.skeleton), {first, first + channels}, motion_.metres_per_unit};
+          FileSkeleton{std::move(bvh.skeleton), std::move(bvh.values), motion_.metres_per_unit};
     }
   }
 
@@ -223,7 +220,7 @@ class PersonLoader {
     // A base of support at the origin of its log: elsewhere 0, 0, 0 is a point that was not seen.
     for (int base : motion_.places.left_ankle) {
       Track& track = motion_.tracks[base];
-      const bool is_base = joints_.others.count(kBaseRole) > 0;
+      const bool is_base = joints_.of_role.count(kBaseRole) > 0;
       if (is_base && NeverSeen(track)) track.assign(track.size(), Eigen::Vector3d::Zero());
     }
     const double rate = mapping_.frame_rate > 0.0 ? mapping_.frame_rate : points.rate_hz;
@@ -375,19 +372,9 @@ class PersonLoader {
     }
   }
 
-  static Track Mean(const std::vector<Track>& tracks, const std::vector<int>& chosen) {
-    if (chosen.empty()) return {};
-    Track mean = tracks[chosen[0]];
-    for (std::size_t frame = 0; frame < mean.size(); ++frame) {
-      for (std::size_t i = 1; i < chosen.size(); ++i) mean[frame] += tracks[chosen[i]][frame];
-      mean[frame] /= static_cast<double>(chosen.size());
-    }
-    return mean;
-  }
-
   void Take(RecordedPerson* person) {
     for (const PendulumTrack& row : kPendulumTracks) {
-      person->*row.track = Mean(motion_.tracks, motion_.places.*row.joints);
+      person->*row.track = MeanTrack(motion_.tracks, motion_.places.*row.joints);
     }
     if (!options_.keep_all_joints) return;
     person->joint_names = motion_.names;

@@ -511,6 +511,17 @@ std::vector<Eigen::Vector4d> PushAtHeight(const RecordedPerson& person, int star
   return rows;
 }
 
+std::vector<Eigen::Vector3d> MeanTrack(const std::vector<std::vector<Eigen::Vector3d>>& tracks,
+                                       const std::vector<int>& chosen) {
+  if (chosen.empty()) return {};
+  Track mean = tracks[chosen[0]];
+  for (std::size_t frame = 0; frame < mean.size(); ++frame) {
+    for (std::size_t i = 1; i < chosen.size(); ++i) mean[frame] += tracks[chosen[i]][frame];
+    mean[frame] /= static_cast<double>(chosen.size());
+  }
+  return mean;
+}
+
 Eigen::Vector3d ValueBetween(const std::vector<Eigen::Vector3d>& track, double at) {
   const int last = static_cast<int>(track.size()) - 1;
   if (at <= 0.0) return track[0];

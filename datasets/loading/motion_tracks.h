@@ -133,6 +133,11 @@ std::vector<Eigen::Vector4d> PushAtHeight(const RecordedPerson& person, int star
                                           const std::vector<Eigen::Vector3d>& forces,
                                           const PushHeight& height);
 
+// The mean of some tracks, frame by frame: not finite where one of them is not. chosen: empty where
+// there is no such track.
+std::vector<Eigen::Vector3d> MeanTrack(const std::vector<std::vector<Eigen::Vector3d>>& tracks,
+                                       const std::vector<int>& chosen);
+
 // Values at even times: cubic through the four nearest samples (Lagrange; of fewer, through all).
 // at: in samples, from 0.
 Eigen::Vector3d ValueBetween(const std::vector<Eigen::Vector3d>& track, double at);

@@ -420,9 +420,9 @@ ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::s
     entry.subjects.push_back({person.subject_id, person.mass_kg});
   }
   entry.motion = bvh;
-  entry.joints.hip = JointReference{joints[kHipJoint].name};
-  entry.joints.left_ankle = JointReference{joints[kLeftAnkleJoint].name};
-  entry.joints.right_ankle = JointReference{joints[kRightAnkleJoint].name};
+  entry.joints.Set(kBodyHip, JointReference{joints[kHipJoint].name});
+  entry.joints.Set(kLeftAnkle, JointReference{joints[kLeftAnkleJoint].name});
+  entry.joints.Set(kRightAnkle, JointReference{joints[kRightAnkleJoint].name});
   if (recording.pushes.empty()) return entry;
   const int start = recording.pushes[0].start_frame;
   if (start == 0) entry.push_csv = csv;

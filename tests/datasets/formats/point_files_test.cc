@@ -243,7 +243,7 @@ TEST_F(PointFilesTest, MappingFiles) {
       "\"z\"}";
   const ColumnMapping mapping = Unwrapped(ReadColumnMapping(WriteText("m.json", good)));
   EXPECT_EQ(mapping.columns[0].y, "wy");
-  EXPECT_EQ(mapping.joints.hip->mean_of[1].index, 3);
+  EXPECT_EQ(mapping.joints.Of(kBodyHip)->mean_of[1].index, 3);
   EXPECT_EQ(mapping.frame_rate, 100.0);
   EXPECT_EQ(mapping.length_unit, LengthUnit::kCentimetre);
   const std::vector<std::pair<std::string, std::string>> bad = {
