@@ -8,10 +8,10 @@
 #include "ident/bodies/body_recording.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/formations/formation_run.h"
-#include "ident/prediction/frequency_response.h"
 #include "ident/prediction/futures.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/prediction.h"
+#include "ident/problem/linear_loop.h"
 #include "models/formation.h"
 #include "models/rollout.h"
 
@@ -304,48 +304,6 @@ py::dict OnFormation(const Model& model, const std::string& shape, int people, d
   return dict;
 }
 
-// One number of each bin.
-template <typename Value>
-Array Column(const std::vector<FrequencyBin>& bins, Value value) {
-  const int size = static_cast<int>(bins.size());
-  return Reshaped(
-      TableArray(size, 1, 1, [&](int i, int) { return std::array<double, 1>{value(bins[i])}; }),
-      {size});
-}
-
-py::dict ResponseDict(const FrequencyResponse& response) {
-  const auto column = [&response](auto value) { return Column(response.bins, value); };
-  py::dict dict(
-      "name"_a = response.Name(), "input_unit"_a = response.InputUnit(),
-      "output_unit"_a = response.OutputUnit(), "persons"_a = response.people,
-      "recordings"_a = response.recordings,
-      "frequency"_a = column([](const FrequencyBin& bin) { return bin.hz; }),
-      "gain"_a = column([](const FrequencyBin& bin) { return std::exp(bin.log_gain); }),
-      "log_gain_error"_a = column([](const FrequencyBin& bin) { return bin.log_gain_error; }),
-      "phase"_a = column([](const FrequencyBin& bin) { return bin.phase; }),
-      "phase_error"_a = column([](const FrequencyBin& bin) { return bin.phase_error; }),
-      "coherence"_a = column([](const FrequencyBin& bin) { return bin.coherence; }),
-      "people"_a = column([](const FrequencyBin& bin) { return double(bin.people); }));
-  if (!response.has_model) return dict;
-  dict["model_gain"] = column([](const FrequencyBin& bin) { return std::exp(bin.model_log_gain); });
-  dict["model_phase"] = column([](const FrequencyBin& bin) { return bin.model_phase; });
-  return dict;
-}
-
-py::dict ResponsesOf(const Model& model, const std::vector<SharedRecording>& recordings) {
-  const IdentifiedModel identified = IdentifiedOf(model);
-  const auto responses =
-      WithoutGil([&] { return FrequencyResponses(identified, Pendulums(recordings)); });
-  py::dict dict;
-  for (const FrequencyResponse& response : responses) {
-    // Recordings whose segments last differently long are apart.
-    std::string key = response.Key();
-    for (int i = 2; dict.contains(key); ++i) key = response.Key() + "_" + std::to_string(i);
-    dict[py::str(key)] = ResponseDict(response);
-  }
-  return dict;
-}
-
 py::dict LoopDict(const Model& model, double mass, double rod) {
   if (!(mass > 0.0) || !(rod > 0.0)) Raise(Fault::kUsage, Error{"mass and rod must be above 0"});
   const IdentifiedModel identified = IdentifiedOf(model);
@@ -370,7 +328,6 @@ py::dict LoopDict(const Model& model, double mass, double rod) {
 void BindPredictions(py::module_* module) {
   module->def("predict", &PredictOn);
   module->def("simulate_formation", &OnFormation);
-  module->def("frequency_response", &ResponsesOf);
   module->def("loop", &LoopDict);
   py::class_<Online>(*module, "Online")
       .def(py::init<const Model&, const SharedRecording&, int, const std::string&>())

@@ -151,17 +151,6 @@ def test_pictures(made, result, monkeypatch):
         result.plot("forest", axes=axes)
 
 
-def on_oscillating_ground(seconds=40.0, fps=50.0):
-    """One person on ground that moves by a sum of sines with a period of 10 s, whose hip goes half as far again."""
-    times = np.arange(int(seconds * fps) + 1) / fps
-    along = 0.01 * sum(1.0 - np.cos(2 * np.pi * f * times) for f in (0.2, 0.5, 0.9, 1.3))
-    ground = np.stack([along, 0 * along], axis=1)
-    hip = np.stack([1.5 * along, 0 * along, 0 * along + 1.03], axis=1)
-    ankle = np.stack([along, 0 * along, 0 * along + 0.08], axis=1)
-    return pushid.Recording(hip=hip, left_ankle=ankle + [0, 0.1, 0], right_ankle=ankle - [0, 0.1, 0], mass=80.0, fps=fps,
-                            push=np.zeros((len(times) - 1, 4)), push_kind="external", ground=ground)
-
-
 def test_loop(made, result):
     standing = pushid.fit(made[0], stance="fixed", fix={"Kp_theta": 1500, "Kd_theta": 300})
     loop = standing.loop()
@@ -169,13 +158,3 @@ def test_loop(made, result):
     assert loop["theta"]["phase_margin"] > 0 and loop["theta"]["gain_down"] < 1 < loop["theta"]["stiffness_ratio"]
     with pytest.raises(pushid.UsageError, match="mass"):
         standing.loop(mass=0.0)
-
-
-def test_frequency_response(made, result):
-    assert result.frequency_response(made[0]) == {}
-    found = result.frequency_response([on_oscillating_ground()])
-    assert sorted(found) == ["angle_theta_by_ground_shift"]
-    angle = found["angle_theta_by_ground_shift"]
-    assert angle["input_unit"] == "m" and angle["output_unit"] == "rad" and len(angle["frequency"]) == 4
-    assert {"gain", "phase", "coherence", "log_gain_error", "people", "model_gain"} <= set(angle)
-    assert np.all(angle["gain"] > 0) and len(angle["gain"]) == len(angle["model_phase"])

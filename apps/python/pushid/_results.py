@@ -213,17 +213,6 @@ class Result:
         """
         return _pushid.loop(self._model, mass, rod)
 
-    def frequency_response(self, recordings):
-        """How people answer ground that oscillates, frequency by frequency, beside the model.
-
-        {"angle_theta_by_ground_shift": {...}, ...}, empty if nothing in the recordings repeats itself for 10 s. Each has
-        arrays with one value per frequency: "frequency" (Hz), "gain" ("output_unit" over "input_unit"),
-        "log_gain_error" (standard error of the gain's natural logarithm), "phase" and "phase_error" (rad),
-        "coherence", "people" (how many), and, where the model has a closed form, "model_gain" and "model_phase";
-        also "persons", "recordings" and "name".
-        """
-        return _pushid.frequency_response(self._model, checked(recordings))
-
     def report(self, path):
         """Writes the report as one page of HTML (path ends in .html); returns its path."""
         self._model.report(os.fspath(path), self.advice)
