@@ -344,10 +344,6 @@ void LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
   if (!file.points.empty()) LookAtPoints(OrThrow(PointsOfC3d(file)), mapping, found);
   if (!file.analog.empty()) LookAtAnalog(file, found);
   LookAtPlatforms(file, found);
-  for (const C3dEvent& event : file.events) {
-    found->Fact("event", Rounded(event.time_s, 4) + " s " + event.label +
-                             (event.context.empty() ? "" : " (" + event.context + ")"));
-  }
 }
 
 void LookAtPush(Inspection* found) {
