@@ -74,7 +74,7 @@ int Run() {
   WarnGrouped(InputWarnings(model, pendulums));
   const Evaluation evaluation = Evaluate(model, pendulums, ObservedFrames(), group_by,
                                          ForecastUseFlag(), {drawn, kFuturesSeed});
-  const FittedModel fitted = OrFail(ReadFittedModel(FLAGS_model));
+  const FittedModel fitted = OrFail(ReadFittedModel(ModelFile()));
   const std::string person = PersonText(fitted.fit, model, pendulums);
   const std::string steps = StepsReport(pendulums, FLAGS_per_recording);
   if (FLAGS_details || FLAGS_per_recording) {

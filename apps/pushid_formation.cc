@@ -486,7 +486,7 @@ int Run() {
   const FormationRun run = RunFormation(model, scene, flags.frames, flags.names);
   WarnGrouped(InputWarnings(model, {run.recording}));
   if (!run.prediction.status.ok) return LeftDomain(run.prediction.status);
-  const FittedModel fitted = OrFail(ReadFittedModel(FLAGS_model));
+  const FittedModel fitted = OrFail(ReadFittedModel(ModelFile()));
   // A model does not hold the uncertainty of a setting's own parameters, so there are no bands
   // then.
   const bool setting = !FLAGS_setting.empty();

@@ -162,7 +162,7 @@ int Run() {
     std::printf("%s; no recorded motion to compare with\n",
                 ChangedPushesText(changed, recording).c_str());
   }
-  const FittedModel fitted = OrFail(ReadFittedModel(FLAGS_model));
+  const FittedModel fitted = OrFail(ReadFittedModel(ModelFile()));
   std::printf("%s", TextLines(PersonText(fitted.fit, model, {recording})).c_str());
   std::printf("%s", PredictedStepsText(recording, prediction).c_str());
   return PrintFutures(model, recording, FLAGS_frames);

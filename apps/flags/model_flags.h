@@ -3,13 +3,43 @@
 #pragma once
 
 #include "apps/flags/command_line.h"
+#include "apps/support/processes.h"
 #include "ident/model/model_json.h"
 
-DEFINE_string(model, "", "model that pushid-fit --model_out wrote");
+DEFINE_string(model, "",
+              "model that pushid-fit --model_out wrote, or pushid:synthetic_group: a group model "
+              "of synthetic people, which comes with the programs");
 DEFINE_string(set, "",
               "what-if: replace parameters, name=value comma-separated, as in Kp_theta=1500");
 
 namespace pushid {
+
+// Models that come with the programs, as --model=pushid:NAME: PREFIX/share/pushid/models/NAME.json
+// beside PREFIX/bin, where the programs are; in the build folder alike (apps/CMakeLists.txt).
+inline constexpr char kShippedPrefix[] = "pushid:";
+
+inline bool IsShipped() { return FLAGS_model.rfind(kShippedPrefix, 0) == 0; }
+
+// The model's file, as pushid-fit --model_out writes it; empty: none is named.
+inline std::string ModelFile() {
+  if (!IsShipped()) return FLAGS_model;
+  const std::string name = FLAGS_model.substr(sizeof kShippedPrefix - 1);
+  return OwnFolder() + "/../share/pushid/models/" + name + ".json";
+}
+
+inline FittedModel ReadFlaggedModel() {
+  Result<FittedModel> read = ReadFittedModel(ModelFile());
+  if (!IsShipped()) return OrFail(std::move(read));
+  if (!read.ok()) {
+    throw Error{"--model=" + FLAGS_model +
+                " is no model that comes with the programs; there is pushid:synthetic_group (" +
+                read.error().ToString() + ")"};
+  }
+  LOG(WARNING) << FLAGS_model
+               << " was fitted to synthetic people (pushid-simulate), not to recorded ones: it "
+                  "shows what the programs do; fit your own recordings for numbers about people";
+  return std::move(read).value();
+}
 
 // Throws without --model.
 inline void RequireModel() {
@@ -19,7 +49,7 @@ inline void RequireModel() {
 // The model of --model as it was fitted.
 inline IdentifiedModel LoadModelAsFitted() {
   RequireModel();
-  IdentifiedModel model = ModelOf(OrFail(ReadFittedModel(FLAGS_model)).fit);
+  IdentifiedModel model = ModelOf(ReadFlaggedModel().fit);
   model.source = FLAGS_model;
   return model;
 }

@@ -41,6 +41,7 @@ endforeach()
 install(DIRECTORY apps/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/pushid COMPONENT programs)
 install(DIRECTORY apps/workflow DESTINATION ${CMAKE_INSTALL_DATADIR}/pushid COMPONENT programs
         USE_SOURCE_PERMISSIONS)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/share/pushid/models DESTINATION ${CMAKE_INSTALL_DATADIR}/pushid COMPONENT programs)
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
 
 # Debian packages, a component each (tests/install/consumer_test.sh).

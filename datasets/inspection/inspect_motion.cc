@@ -116,15 +116,10 @@ class MotionInspector {
   void Gaps() {
     std::vector<std::pair<int, std::string>> hidden;  // frames, point
     for (std::size_t i = 0; i < motion_.positions.size(); ++i) {
-      std::vector<bool> seen;
-      int missing = 0;
-      for (const Eigen::Vector3d& position : motion_.positions[i]) {
-        seen.push_back(position.allFinite());
-        missing += seen.back() ? 0 : 1;
-      }
+      const std::vector<Eigen::Vector3d>& track = motion_.positions[i];
+      const auto missing = static_cast<int>(std::count_if(
+          track.begin(), track.end(), [](const auto& place) { return !place.allFinite(); }));
       if (missing > 0) hidden.emplace_back(missing, motion_.names[motion_.chosen[i]]);
-      found_.point_names.push_back(motion_.names[motion_.chosen[i]]);
-      found_.seen.push_back(std::move(seen));
     }
     if (hidden.empty()) return;
     std::stable_sort(hidden.begin(), hidden.end(),

@@ -49,15 +49,22 @@ std::vector<std::string> Onsets(const std::string& out) {
   return onsets;
 }
 
-// What intervals leave out stands beside them.
-TEST_F(SimulateFormationTest, WhatIsHeldIsNotInTheIntervals) {
+// The group model that comes with the programs says what it was fitted to; what its intervals leave
+// out stands beside them.
+TEST_F(SimulateFormationTest, TheShippedModelIsOfSyntheticPeople) {
   const AppRun run =
-      Succeeded(Simulate({"--formation=line", "--set=mu=60", "--people=4", "--spacing=0.42",
-                          "--push=12", "--out=" + Path("line.txt")}));
+      Succeeded(RunApp("pushid-formation",
+                       {"--model=pushid:synthetic_group", "--formation=line", "--set=mu=60",
+                        "--people=4", "--spacing=0.42", "--out=" + Path("line.txt")},
+                       60));
+  EXPECT_TRUE(Contains(run.err, "was fitted to synthetic people"));
   EXPECT_TRUE(Contains(run.out, "not in these intervals: "));
+  EXPECT_TRUE(Contains(run.out, "contact_height = 0.5"));
   EXPECT_TRUE(Contains(run.out, "mu = 60 (--set)"));
   const AppRun wave = Succeeded(RunApp("pushid-inspect", {"--wave", Path("line.txt")}));
   EXPECT_TRUE(Contains(wave.out, "speed of the onset: "));
+  EXPECT_TRUE(Refused(RunApp("pushid-formation", {"--model=pushid:none", "--formation=line"}),
+                      {"pushid:none", "pushid:synthetic_group"}));
 }
 
 TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
