@@ -357,7 +357,7 @@ void ShowGroup(const GeneratorSettings& settings, const TrainedNetworks& trained
   Show(files, animation, animation);
 }
 
-// Once for all recordings whose pushes are of such kinds.
+// Warns once of all recordings whose pushes are of kinds that the generator never saw.
 void WarnOfPushKinds(const GeneratorSettings& settings,
                      const std::vector<BodyRecording>& recordings) {
   std::set<std::string> told;

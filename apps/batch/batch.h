@@ -100,7 +100,7 @@ struct JobResult {
   // restored.
   std::vector<std::pair<MetricId, double>> held_out;
 
-  // Null where there is no such score.
+  // The score, or null where there is none.
   const double* HeldOut(MetricId metric) const;
 
   bool done() const { return state == JobState::kDone; }

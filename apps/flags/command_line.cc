@@ -163,7 +163,7 @@ Error NoSuchFlag(const std::string& name) {
   std::vector<std::string> known;
   for (const FlagInfo& flag : OwnFlags()) known.push_back(flag.name);
   std::string meant = ClosestName(name, known);
-  // For "out" all outputs are suggested.
+  // All outputs are suggested for "out".
   for (const std::string& one : known) {
     if (!meant.empty() && !EndsWith(meant, "_" + name)) break;
     if (EndsWith(one, "_" + name)) meant += (meant.empty() ? "" : " or --") + one;

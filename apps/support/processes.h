@@ -59,7 +59,7 @@ class FolderLock {
   }
   ~FolderLock();
 
-  // False where another process has it. Errors: the folder cannot be opened.
+  // Returns false where another process has it. Errors: the folder cannot be opened.
   Result<bool> Take(const std::string& folder);
 
  private:

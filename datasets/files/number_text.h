@@ -70,7 +70,7 @@ inline constexpr char kBlanks = '\0';  // as a separator: runs of blanks
 // another separator. Of equal counts, that of the one that names hold least often.
 char SeparatorOf(std::string_view names);
 
-// Plural, for messages.
+// The separator's name for messages, in the plural.
 const char* SeparatorName(char separator);
 
 // The cells of a row. A separator in quotes belongs to its cell.

@@ -215,8 +215,8 @@ int SegmentsOf(const C3dFile& file) {
 
 // The poses of segments in a C3D file (group ROTATION, as Theia3D and Visual3D write them).
 //
-// From the block ROTATION:DATA_START on stand, for every frame, ROTATION:RATIO times (once, where
-// it is not said) ROTATION:USED poses of 17 floats each: a 4 x 4 matrix by columns, segment to
+// The block ROTATION:DATA_START begins the poses, for every frame ROTATION:RATIO times (once, where
+// it is not said) ROTATION:USED of 17 floats each: a 4 x 4 matrix by columns, segment to
 // world, whose last column is the segment's origin in POINT:UNITS, and its reliability, negative
 // where the segment was not seen.
 //

@@ -291,8 +291,8 @@ bool IsForceColumn(const std::string& name) {
   return end < 3 || name[end - 3] != '_' || name[end - 2] != 'p';
 }
 
-// Beside names as "force", a platform's force ("left_v" or "left_f"), and beside it its centre of
-// pressure and moments ("left_p", "left_m").
+// Forces are told by their names: those with "force" in them, a platform's ("left_v" or "left_f"),
+// and beside it its centre of pressure and moments ("left_p", "left_m").
 PointMotion WithoutForces(const PointMotion& motion) {
   PointMotion points = motion;
   points.names.clear();

@@ -59,7 +59,7 @@ std::string LengthText(double metres_per_unit);
 // and forward ("z", "+x", "-y", upper or lower case). Its rows are forward, up x forward and up.
 // Error (without a place): not an axis, or both along the same line.
 Result<Eigen::Matrix3d> AxesRotation(const std::string& up, const std::string& forward);
-// As above of axes that may be left out, which are z and x then; throws the Error.
+// The rotation of axes that may be left out, which are z and x then; throws the Error.
 Eigen::Matrix3d AxesGiven(const std::string& up, const std::string& forward);
 
 // Frame rates that files and manifests may give.

@@ -52,7 +52,7 @@ constexpr double kSideways = 0.8;  // rad between the way of a walk and where th
 constexpr double kStride = 1.0;    // s, about
 constexpr double kWalked = 0.3;    // m; less has no direction
 
-// Across `up`; zero where it is not seen.
+// The part of a vector across `up`; zero where it is not seen.
 Eigen::Vector3d Across(const Eigen::Vector3d& v, const Eigen::Vector3d& up) {
   return v.allFinite() ? Eigen::Vector3d(v - v.dot(up) * up) : Eigen::Vector3d::Zero();
 }

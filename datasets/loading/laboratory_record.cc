@@ -426,8 +426,8 @@ PlateTracks PlatesOfC3d(const std::string& path, const ManifestPlates& plates,
 constexpr double kLoaded = 30.0;       // N
 constexpr double kNearOrigin = 0.005;  // m: there a centre may be zero
 
-// Where the platform is pressed and its centre is not known, the one known before stands in, or the
-// first; NaN where none is. The samples where this is so under load.
+// Puts the centre known before, or the first, in the place of those that are not known while the
+// platform is pressed; NaN where none is. Returns the samples where this is so under load.
 std::vector<int> FillCentres(const Track& force, Track* centre) {
   const auto pressed = [&](size_t i) { return force[i].z() >= kPressed; };
   const auto known = [&](size_t i) { return SeenPosition((*centre)[i]).allFinite(); };

@@ -95,7 +95,7 @@ int ResampledFrames(int frames, double from_hz, double to_hz);
 std::vector<Eigen::Vector3d> ResampleTrack(const std::vector<Eigen::Vector3d>& track,
                                            double from_hz, double to_hz);
 
-// Per new frame, the least weight of the frames that it is interpolated from.
+// The weight of each new frame: the least of the frames that it is interpolated from.
 std::vector<double> ResampleWeights(const std::vector<double>& weight, double from_hz,
                                     double to_hz);
 
