@@ -18,7 +18,7 @@ DEFINE_int32(jobs, 1, "number of jobs run in parallel");
 DEFINE_string(shard, "", "i/n: only every n-th job, starting with the i-th (from 1)");
 DEFINE_string(job, "", "only the job with this id (or the start of its id)");
 DEFINE_bool(summary, true,
-            "write summary.csv, summary.json and summary.html; set to false for shards that run at "
+            "write summary.csv and summary.json; set to false for shards that run at "
             "the same time");
 DEFINE_bool(gather, false, "run nothing; only write the summary of existing results");
 

@@ -135,18 +135,14 @@ void CheckNumbers() {
 // Errors: flags that say something to generators of the other kind alone, or that this kind needs.
 void CheckKindFlags(const GenerateOptions& options, GeneratorKind kind) {
   const bool groups = RowOf(kind).groups;
-  std::vector<const char*> foreign = {"folder",        "action",  "window", "protocol",
+  std::vector<std::string> foreign = {"folder",        "action",  "window", "protocol",
                                       "target_window", "without", "samples"};
   if (!groups) {
     foreign = {"recordings", "setting", "id",      "observed", "physics",
                "frames",     "states",  "csv_out", "steps",    "blend"};
   }
   if (PublishedKind().value_or(kind) != kind) foreign.push_back("published");
-  for (const char* flag : foreign) {
-    if (!Given(flag)) continue;
-    throw Error{std::string("--") + flag + " has no effect on a generator of " + NameOf(kind),
-                FLAGS_model};
-  }
+  RefuseGiven(foreign, " has no effect on a generator of " + NameOf(kind), FLAGS_model);
   if (!groups) return Require("folder", FLAGS_folder, "name the folder of the clips");
   if (Shows()) Require("id", FLAGS_id, "name the recording to show");
   if (options.changes.diffusion.blend > 0.0 && FLAGS_physics.empty()) {
@@ -361,7 +357,7 @@ void ShowGroup(const GeneratorSettings& settings, const TrainedNetworks& trained
   Show(files, animation, animation);
 }
 
-// Once for all recordings whose pushes are of such kinds.
+// Warns once of all recordings whose pushes are of kinds that the generator never saw.
 void WarnOfPushKinds(const GeneratorSettings& settings,
                      const std::vector<BodyRecording>& recordings) {
   std::set<std::string> told;

@@ -10,7 +10,7 @@
 #include "ident/formations/formation_run.h"
 
 DEFINE_string(mapping, "", "mapping file: which columns or joints are hip and ankles, time, rate");
-DEFINE_string(svg_out, "", "draw hip, gaps and forces here (SVG); for one file");
+DEFINE_string(svg_out, "", "draw hip, steps and forces here (SVG); for one file");
 DEFINE_string(json_out, "", "write what was found of all files here (JSON)");
 DEFINE_bool(details, false, "print all that was found instead of one screen a file");
 DEFINE_bool(wave, false,
@@ -42,7 +42,6 @@ int RunWaves() {
 }
 
 constexpr double kInspectionWidth = 1000;
-constexpr std::size_t kMostBars = 60;
 constexpr std::size_t kMostPoints = 1500;  // of a line: more than there are pixels
 
 // Broken where values are missing.
@@ -83,36 +82,8 @@ void AddHip(const Inspection& found, Figure* figure) {
   if (found.steps) figure->legend = {{"foot off the ground", kLiftedLook}};
 }
 
-// Bars where points were seen, those that were hidden most first.
-Chart SeenChart(const Inspection& found) {
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < found.seen.size(); ++i) order.push_back(i);
-  const auto hidden = [&found](std::size_t i) {
-    return std::count(found.seen[i].begin(), found.seen[i].end(), false);
-  };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return hidden(a) > hidden(b); });
-  order.resize(std::min(order.size(), kMostBars));
-  Chart chart{"points seen (blue), by frame"};
-  for (std::size_t i : order) {
-    const std::vector<bool>& seen = found.seen[i];
-    for (std::size_t begin = 0, end = 0; begin < seen.size(); begin = end) {
-      end = begin;
-      while (end < seen.size() && seen[end] == seen[begin]) ++end;
-      chart.bars.push_back(
-          {static_cast<double>(chart.y_categories.size()), static_cast<double>(begin),
-           static_cast<double>(end), seen[begin] ? "fill:#9fb8d6" : "fill:#d1762c",
-           found.point_names[i] + (seen[begin] ? " seen" : " hidden") + ", frames " +
-               std::to_string(begin) + " to " + std::to_string(end - 1)});
-    }
-    chart.y_categories.push_back(found.point_names[i]);
-  }
-  return chart;
-}
-
 // A panel for each of these that was found: the hip's three coordinates less those of its first
-// frame, with the onset marked; when each foot is off the ground; forces; a bar per point with its
-// gaps, at most 60 points, those with gaps first.
+// frame, with the onset marked; when each foot is off the ground; forces.
 std::string InspectionSvg(const Inspection& found) {
   Figure figure;
   figure.heading = found.path + ": " + found.format;
@@ -120,7 +91,6 @@ std::string InspectionSvg(const Inspection& found) {
   for (const InspectedSignal& force : found.forces) {
     figure.panels.push_back(SignalChart(force.name + ", N", force.rate_hz, force.values));
   }
-  if (!found.seen.empty()) figure.panels.push_back(SeenChart(found));
   return DrawFigure(figure, kInspectionWidth, found.path).ToString();
 }
 
@@ -162,7 +132,7 @@ int Run() {
     all.push_back(InspectionJson(found.value()));
     if (FLAGS_svg_out.empty()) continue;
     const Inspection& seen = found.value();
-    if (seen.hip.empty() && seen.seen.empty() && seen.forces.empty()) {
+    if (seen.hip.empty() && seen.forces.empty()) {
       return Fail(file + ": a " + seen.format +
                   " contains nothing to draw; give the file of a recording");
     }

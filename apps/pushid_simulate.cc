@@ -2,10 +2,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
 #include "apps/flags/overwrite_flag.h"
-#include "datasets/loading/laboratory_record.h"
 #include "datasets/manifest/recording.h"
-#include "datasets/synthetic/laboratory.h"
-#include "datasets/synthetic/synthetic_clips.h"
 #include "ident/figures/text_table.h"
 #include "ident/fit/fit_setup.h"
 #include "ident/model/model_rollout.h"
@@ -22,14 +19,8 @@ DEFINE_int32(frames, pushid::SyntheticOptions{}.frames, "frames of each recordin
 DEFINE_double(fps, pushid::SyntheticOptions{}.fps, "frames per second");
 // The library's recordings are exact; a user's trial should be as noisy as real ones.
 DEFINE_double(noise, 0.002, "standard deviation of the joints' positions, m");
-DEFINE_string(
-    push_kind, pushid::NameOf(pushid::SyntheticOptions{}.push_kind),
-    "net (only the push's first part, the tail follows), external, or none (with --ground)");
-DEFINE_string(
-    ground, "none",
-    "motion of the ground along x: none, step (within 0.4 s), sine (0.5 Hz), sum_of_sines (five "
-    "of 0.15 to 1.55 Hz), or a CSV file time,x,y,theta,phi (m, rad)");
-DEFINE_bool(plates, false, "also write what force platforms under the feet measure");
+DEFINE_string(push_kind, pushid::NameOf(pushid::SyntheticOptions{}.push_kind),
+              "net (only the push's first part, the tail follows) or external");
 DEFINE_string(stance, pushid::NameOf(pushid::SyntheticOptions{}.model.stance),
               "without --model: behaviour of the synthetic people's feet: slide, steps "
               "(hold, then step) or fixed (hold)");
@@ -44,44 +35,11 @@ DEFINE_double(
     subject_spread, pushid::SyntheticOptions{}.subject_spread,
     "variation of all parameters between people (standard deviation of the logarithm; 0.1 is "
     "about 10 %)");
-DEFINE_int32(clips, 0,
-             "write motion-capture clips of a walking stick figure instead, for "
-             "pushid-train-generator: so many of each of four actions, and one more "
-             "to test; --frames at 50 Hz, 600 if not given; 0: recordings of pushes");
-DEFINE_int32(turns, 0,
-             "write so many recordings of three people who talk in turns instead, without a push, "
-             "with the truth of who speaks (states.csv); --frames, 300 if not given; 0: recordings "
-             "of pushes");
-DEFINE_int32(laboratory, 0,
-             "write a laboratory's recordings instead, of so many people who are not the fitted "
-             "model (two links that balance late, feet that step): markers (TRC), force platforms, "
-             "a load cell that pulled, and the truth in truth.json");
 DEFINE_uint64(seed, pushid::SyntheticOptions{}.seed, "seed of people, pushes and noise");
 
 namespace {
 
 using namespace pushid;
-
-// Sets the ground of --ground; a file is sampled at the recordings' frames.
-void SetGround(SyntheticOptions* study) {
-  const std::optional<GroundKind> kind = FromName<GroundKind>(FLAGS_ground);
-  if (kind && *kind != GroundKind::kFile) {
-    study->ground = *kind;
-    // Platforms sway in experiments by 20 to 30 mm from peak to peak, five sines together.
-    constexpr double kSwayOfEach = 0.0036;
-    if (*kind == GroundKind::kSumOfSines) study->ground_size_m = kSwayOfEach;
-    if (study->pushes || study->ground != GroundKind::kNone) return;
-    throw Error{"--push_kind=none leaves nothing that moves anybody; add --ground=step"};
-  }
-  study->ground = GroundKind::kFile;
-  ManifestRecording entry;
-  entry.ground.csv = FLAGS_ground;
-  Recording frames;
-  frames.fps = study->fps;
-  frames.people.resize(1);
-  frames.people[0].hip.resize(study->frames);
-  study->ground_poses = OrFail(LoadGround(entry, frames));
-}
 
 // Everything but the truth: the terms of the model that the flags name, not its parameters.
 SyntheticOptions StudyFromCommandLine() {
@@ -98,20 +56,15 @@ SyntheticOptions StudyFromCommandLine() {
   TakeInRange("fps", FLAGS_fps, 10, 10000, &study.fps);
   TakeInRange("noise", FLAGS_noise, 0, 0.1, &study.joint_noise_m);
   TakeInRange("subject_spread", FLAGS_subject_spread, 0, 2, &study.subject_spread);
-  study.pushes = FLAGS_push_kind != "none";
-  const std::optional<PushKind> kind =
-      study.pushes ? FromName<PushKind>(FLAGS_push_kind) : PushKind::kExternal;
+  const std::optional<PushKind> kind = FromName<PushKind>(FLAGS_push_kind);
   if (!kind || *kind == PushKind::kNetWithoutFriction) {
-    throw Error{"--push_kind is '" + FLAGS_push_kind +
-                "'; it must be net or external, or none with --ground"};
+    throw Error{"--push_kind is '" + FLAGS_push_kind + "'; it must be net or external"};
   }
   OrFail(ParseName("--stance", FLAGS_stance, &study.model.stance));
   OrFail(ParseName("--delay", FLAGS_delay, &study.model.delay));
   OrFail(ParseName("--truth_noise", FLAGS_truth_noise, &study.model.process_noise));
   study.push_kind = *kind;
   study.seed = FLAGS_seed;
-  study.plates = FLAGS_plates;
-  SetGround(&study);
   return study;
 }
 
@@ -131,60 +84,9 @@ void PrintTruth(const IdentifiedModel& truth, const SyntheticOptions& options) {
   }
 }
 
-// Throws where flags beside --clips, --turns or --laboratory (allowed[0], with this value) have no
-// effect.
-void CheckNothingBut(const std::vector<std::string>& allowed, int count) {
-  for (const std::string& name : ChangedFlags()) {
-    if (std::find(allowed.begin(), allowed.end(), name) == allowed.end()) {
-      throw Error{"--" + name + " has no effect with --" + allowed[0] + "; leave it out"};
-    }
-  }
-  Require("out", FLAGS_out, "name the folder to write");
-  OrFail(CheckOutputFolder("out", FLAGS_out));
-  CheckRange(allowed[0].c_str(), count, 1, 1000);
-  CheckRange("frames", FLAGS_frames, 3, 100000);
-}
-
 std::string ManifestFile() { return (std::filesystem::path(FLAGS_out) / "manifest.json").string(); }
 
-int WriteTurns() {
-  SyntheticTurnsOptions options;
-  options.recordings = FLAGS_turns;
-  if (Given("frames")) options.frames = FLAGS_frames;
-  options.seed = FLAGS_seed;
-  CheckNothingBut({"turns", "frames", "seed", "out", "overwrite"}, FLAGS_turns);
-  OrFail(WriteSyntheticTurns(FLAGS_out, options));
-  std::printf("%d recordings of three people who talk in turns: %s\n", options.recordings,
-              ManifestFile().c_str());
-  return kDone;
-}
-
-int WriteClips() {
-  SyntheticClipOptions options;
-  options.clips = FLAGS_clips;
-  if (Given("frames")) options.frames = FLAGS_frames;
-  options.seed = FLAGS_seed;
-  CheckNothingBut({"clips", "frames", "seed", "out", "overwrite"}, FLAGS_clips);
-  OrFail(WriteSyntheticClips(FLAGS_out, options));
-  std::printf("%d clips of each action and one to test: %s\n", options.clips, FLAGS_out.c_str());
-  return kDone;
-}
-
-int WriteOfLaboratory() {
-  LaboratoryOptions options;
-  options.people = FLAGS_laboratory;
-  options.seed = FLAGS_seed;
-  CheckNothingBut({"laboratory", "seed", "out", "overwrite"}, FLAGS_laboratory);
-  OrFail(WriteLaboratoryStudy(FLAGS_out, options));
-  std::printf("%d people, %d pulls each that they withstand and %d after which they step: %s\n",
-              options.people, options.standing, options.stepping, ManifestFile().c_str());
-  return kDone;
-}
-
 int Run() {
-  if (FLAGS_turns != 0) return WriteTurns();
-  if (FLAGS_clips != 0) return WriteClips();
-  if (FLAGS_laboratory != 0) return WriteOfLaboratory();
   SyntheticOptions study = StudyFromCommandLine();
   const IdentifiedModel truth =
       FLAGS_model.empty() ? OrFail(SyntheticTruth(study, FLAGS_set)) : LoadFlaggedModel();

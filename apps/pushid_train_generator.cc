@@ -168,20 +168,16 @@ void ReadNumbers(TrainGeneratorFlags* flags) {
 
 // Flags of another kind would do nothing.
 void CheckKind(const GeneratorKindRow& kind) {
-  const auto refuse = [](std::initializer_list<const char*> flags, const std::string& goes_with) {
-    for (const char* flag : flags) {
-      if (Given(flag)) throw Error{std::string("--") + flag + " needs " + goes_with};
-    }
-  };
   if (kind.groups) {
-    refuse({"folder", "noise_steps", "simlpe_steps"},
-           "--kind=" + NameOf(GeneratorKind::kParticles));
+    RefuseGiven({"folder", "noise_steps", "simlpe_steps"},
+                " needs --kind=" + NameOf(GeneratorKind::kParticles));
   } else {
-    refuse({"recordings", "setting", "observed", "crossvalidate", "physics", "blend", "pooling"},
-           "--kind=" + KindsOfGroups());
+    RefuseGiven(
+        {"recordings", "setting", "observed", "crossvalidate", "physics", "blend", "pooling"},
+        " needs --kind=" + KindsOfGroups());
     Require("folder", FLAGS_folder, "name the folder of the clips");
   }
-  if (FLAGS_crossvalidate == 0) refuse({"blend", "physics"}, "--crossvalidate");
+  if (FLAGS_crossvalidate == 0) RefuseGiven({"blend", "physics"}, " needs --crossvalidate");
   if (FLAGS_blend > 0.0 && FLAGS_physics.empty()) {
     throw Error{"--blend needs --physics, the pendulum's model"};
   }

@@ -89,7 +89,7 @@ void ReadOptions(RestorationRunOptions* options) {
   training.num_threads = FLAGS_num_threads;
 }
 
-// With the fit's options read from the model, unless flags are only checked.
+// Reads the fit's options from the model too, unless flags are only checked.
 RestorationRunOptions OptionsFromCommandLine() {
   RestorationRunOptions options;
   ReadOptions(&options);

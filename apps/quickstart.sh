@@ -2,17 +2,14 @@
 # From a fresh machine to identified parameters and a prediction: installs what is missing, builds the
 # programs, makes recordings of synthetic people whose parameters are known, fits them, compares, and
 # predicts pushes that were held out. May be run again and again, from any folder.
-#   --example=model        (default) data come from the model that is fitted: the truth can be found exactly
-#   --example=laboratory   data come from another model: what is found of it, what is not, and which diagnostics say so
-#   --out=FOLDER           default quickstart-output, of the laboratory quickstart-output/laboratory
+#   --out=FOLDER   default quickstart-output
 # PUSHID_BIN: use the programs in this folder, and build nothing.
 set -euo pipefail
-example=model out=
+out=quickstart-output
 for word in "$@"; do
   case $word in
-    --example=model | --example=laboratory) example=${word#*=} ;;
     --out=?*) out=$(realpath -m "${word#*=}") ;;
-    *) echo "quickstart.sh: '$word' is not --example=model, --example=laboratory or --out=FOLDER" >&2; exit 1 ;;
+    *) echo "quickstart.sh: '$word' is not --out=FOLDER" >&2; exit 1 ;;
   esac
 done
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -37,12 +34,6 @@ if [ -z "${PUSHID_BIN:-}" ]; then
   if [ $example = laboratory ]; then targets+=(pushid-push); fi
   cmake --build build/release --parallel "$(nproc)" --target "${targets[@]}"
 fi
-if [ $example = laboratory ]; then
-  # shellcheck source=apps/laboratory.sh
-  source apps/laboratory.sh
-  exit 0
-fi
-out=${out:-quickstart-output}
 
 # The study FOLDER SEED: recordings of eight people, and a fit with default flags, whose priors do not depend on the truth.
 study() {

@@ -100,7 +100,7 @@ struct JobResult {
   // restored.
   std::vector<std::pair<MetricId, double>> held_out;
 
-  // Null where there is no such score.
+  // The score, or null where there is none.
   const double* HeldOut(MetricId metric) const;
 
   bool done() const { return state == JobState::kDone; }
@@ -142,7 +142,7 @@ Value& ValueOf(const std::string& key, std::vector<std::pair<std::string, Value>
 
 std::vector<JobResult> ReadResults(const BatchPlan& plan, const std::vector<BatchJob>& jobs);
 
-// summary.csv, summary.json and summary.html in the plan's folder.
+// summary.csv and summary.json in the plan's folder.
 void WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& rows);
 
 // Tables by variant (jobs done and failed, mean and spread over groups of each parameter), of the

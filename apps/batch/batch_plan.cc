@@ -76,7 +76,7 @@ class PlanReader {
     }
   }
 
-  // Null where there is none, unless it is needed. keys: those that it may have.
+  // The table of this name; null where there is none and it is not needed. keys: those of it.
   const toml::table* Table(const char* name, const std::vector<std::string>& keys,
                            bool needed = true) {
     const toml::node* node = root_.get(name);

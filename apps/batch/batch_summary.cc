@@ -14,21 +14,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr size_t kMostRowsInText = 40, kMostRowsOnPage = 2000;
+constexpr size_t kMostRowsInText = 40;
 
-// A column of the table. A new one is a row in JobColumns: summary.csv, summary.json, the page and
-// the terminal take name, place and cell from there.
+// A column of the table. A new one is a row in JobColumns: summary.csv and summary.json take name,
+// place and cell from there.
 struct JobCell {
-  std::string exact{};            // in summary.csv
-  std::string shown{};            // to people: rounded or shortened
+  std::string text{};             // in summary.csv
   nlohmann::ordered_json json{};  // null: not in summary.json
 };
 
 struct JobColumn {
   std::string name;   // in summary.csv
   std::string place;  // in a job of summary.json: "/run/seconds"
-  std::string title;  // on the page; empty: only in the files
-  bool words;         // to the left
   std::function<JobCell(const JobResult&)> cell;
 };
 
@@ -46,21 +43,11 @@ MetricList HeldOutMetrics(const std::vector<JobResult>& rows) {
   return metrics;
 }
 
-JobCell Words(const std::string& text) { return {text, text, text}; }
+JobCell Words(const std::string& text) { return {text, text}; }
 
-JobCell Number(double value, int digits) {
-  return {DoubleText(value), Rounded(value, digits), NumberJson(value)};
-}
+JobCell Number(double value) { return {DoubleText(value), NumberJson(value)}; }
 
 JobCell Nothing() { return {}; }
-
-// A value with its error and, unless the data identify it, its status.
-std::string EstimateText(const Estimate& e) {
-  const double of = e.interval().standard_error;
-  const std::string text = Rounded(e.value, 4), error = Rounded(of, 3);
-  return (std::isfinite(of) ? text + " +- " + error : text) +
-         (e.status == EstimateStatus::kIdentified ? "" : " (" + NameOf(e.status) + ")");
-}
 
 // "hipADE" -> "hip_ade", "relative_MPJPE" -> "relative_mpjpe"
 std::string LowerCase(const std::string& name) {
@@ -83,74 +70,56 @@ std::string Place(const char* folder, const std::string& name, const char* rest 
 std::vector<JobColumn> JobColumns(const std::vector<JobResult>& rows) {
   using Row = const JobResult&;
   std::vector<JobColumn> columns = {
-      {"id", "/id", "job", true,
+      {"id", "/id", [](Row r) { return Words(r.job->id); }},
+      {"variant", "/variant", [](Row r) { return Words(r.job->variant); }},
+      {"group", "/group", [](Row r) { return Words(r.job->group); }},
+      {"replica", "/replica",
        [](Row r) {
-         return JobCell{r.job->id, r.job->id.substr(0, 8), r.job->id};
+         return JobCell{std::to_string(r.job->replica), r.job->replica};
        }},
-      {"variant", "/variant", "variant", true, [](Row r) { return Words(r.job->variant); }},
-      {"group", "/group", "group", true, [](Row r) { return Words(r.job->group); }},
-      {"replica", "/replica", "replica", false,
-       [](Row r) {
-         const std::string text = std::to_string(r.job->replica);
-         return JobCell{text, text, r.job->replica};
-       }},
-      {"status", "/status", "status", true, [](Row r) { return Words(NameOf(r.state)); }},
-      {"reason", "/reason", "", true, [](Row r) { return Words(r.reason); }},
+      {"status", "/status", [](Row r) { return Words(NameOf(r.state)); }},
+      {"reason", "/reason", [](Row r) { return Words(r.reason); }},
   };
   const auto add = [&columns](JobColumn column) { columns.push_back(std::move(column)); };
   std::vector<std::string> names;  // in the order in which jobs first have them
   for (const JobResult& row : rows) {
     for (const auto& [name, value] : row.parameters) AddOnce(name, &names);
   }
-  const auto of_parameters = [&](const char* ending, const char* key, bool words,
+  const auto of_parameters = [&](const char* ending, const char* key,
                                  JobCell (*cell)(const Estimate&)) {
-    const bool value = *ending == '\0';  // on the page error and status stand beside it
     for (const std::string& name : names) {
-      add({name + ending, Place("/parameters", name, key), value ? name : "", words,
-           [name, cell](Row r) {
+      add({name + ending, Place("/parameters", name, key), [name, cell](Row r) {
              const auto found = r.parameters.find(name);
              return found == r.parameters.end() ? Nothing() : cell(found->second);
            }});
     }
   };
-  of_parameters("", "/value", false, [](const Estimate& e) {
-    JobCell cell = Number(e.value, 4);
-    cell.shown = EstimateText(e);
-    return cell;
-  });
-  of_parameters("_se", "/standard_error", false,
-                [](const Estimate& e) { return Number(e.standard_error, 3); });
-  of_parameters("_status", "/status", true,
-                [](const Estimate& e) { return Words(NameOf(e.status)); });
-  of_parameters("_data_share", "/data_share", false,
-                [](const Estimate& e) { return Number(e.shares.data, 3); });
-  add({"cost", "/cost", "", false, [](Row r) { return r.done() ? Number(r.cost, 4) : Nothing(); }});
-  add({"settles", "/settles", "settles", false, [](Row r) {
-         if (!r.done()) return Nothing();
-         const std::string text = r.settles ? "yes" : "no";
-         return JobCell{text, text, r.settles};
+  of_parameters("", "/value", [](const Estimate& e) { return Number(e.value); });
+  of_parameters("_se", "/standard_error",
+                [](const Estimate& e) { return Number(e.standard_error); });
+  of_parameters("_status", "/status", [](const Estimate& e) { return Words(NameOf(e.status)); });
+  of_parameters("_data_share", "/data_share",
+                [](const Estimate& e) { return Number(e.shares.data); });
+  add({"cost", "/cost", [](Row r) { return r.done() ? Number(r.cost) : Nothing(); }});
+  add({"settles", "/settles", [](Row r) {
+         return r.done() ? JobCell{r.settles ? "yes" : "no", r.settles} : Nothing();
        }});
   for (MetricId id : HeldOutMetrics(rows)) {
     const Metric& metric = kMetrics[id];
     add({"held_out_" + LowerCase(metric.name) + "_" + metric.unit, Place("/held_out", metric.Key()),
-         std::string("held-out ") + metric.name + ", " + metric.unit, false, [id](Row r) {
+         [id](Row r) {
            const double* const value = r.HeldOut(id);
-           return value != nullptr ? Number(*value, 3) : Nothing();
+           return value != nullptr ? Number(*value) : Nothing();
          }});
   }
-  add({"warnings", "/warnings", "warnings", false, [](Row r) {
-         if (r.warnings.empty()) return Nothing();
-         return JobCell{Joined(r.warnings, "; "), std::to_string(r.warnings.size()), r.warnings};
+  add({"warnings", "/warnings", [](Row r) {
+         return r.warnings.empty() ? Nothing() : JobCell{Joined(r.warnings, "; "), r.warnings};
        }});
-  add({"solve_s", "/run/solve_s", "solve s", false, [](Row r) {
-         JobCell cell = r.done() ? Number(r.solve_s, 2) : Nothing();
-         cell.json = r.solve_s;
-         return cell;
+  add({"solve_s", "/run/solve_s", [](Row r) {
+         return JobCell{r.done() ? DoubleText(r.solve_s) : "", r.solve_s};
        }});
-  add({"seconds", "/run/seconds", "seconds", false, [](Row r) {
-         JobCell cell = r.state == JobState::kOpen ? Nothing() : Number(r.seconds, 2);
-         cell.json = r.seconds;
-         return cell;
+  add({"seconds", "/run/seconds", [](Row r) {
+         return JobCell{r.state == JobState::kOpen ? "" : DoubleText(r.seconds), r.seconds};
        }});
   return columns;
 }
@@ -313,7 +282,6 @@ TextTable BootstrapTable(const std::vector<JobResult>& rows) {
   TextTable table({"variant", "group", "parameter", ">estimate", ">replicas", ">bootstrap error",
                    ">2.5 %", ">97.5 %"});
   for (const BootstrapSpread& s : SpreadOverReplicas(rows)) {
-    if (table.rows().size() > kMostRowsOnPage) break;
     table.Add({s.job->variant, s.job->group, s.parameter, Rounded(s.estimate, 4),
                std::to_string(s.replicas), Rounded(s.standard_error, 3), Rounded(s.lower95, 4),
                Rounded(s.upper95, 4)});
@@ -321,49 +289,25 @@ TextTable BootstrapTable(const std::vector<JobResult>& rows) {
   return table;
 }
 
-// Every different warning with the number of jobs that have it.
-TextTable WarningTable(const std::vector<JobResult>& rows) {
-  std::vector<std::pair<std::string, std::vector<const JobResult*>>> warnings;
-  for (const JobResult& row : rows) {
-    for (const std::string& warning : row.warnings) {
-      ValueOf(warning, &warnings).push_back(&row);
-    }
-  }
-  TextTable table({">jobs", "the first", "warning"});
-  for (const auto& [warning, jobs] : warnings) {
-    if (table.rows().size() > kMostRowsOnPage) break;
-    table.Add({std::to_string(jobs.size()), jobs[0]->job->id.substr(0, 8), warning});
-  }
-  return table;
-}
-
 TextTable FailureTable(const std::vector<JobResult>& rows) {
   TextTable table({"failed", "variant", "group", ">replica", "reason"});
   for (const JobResult& row : rows) {
-    if (row.state != JobState::kFailed || table.rows().size() > kMostRowsOnPage) continue;
+    if (row.state != JobState::kFailed) continue;
     table.Add({row.job->id.substr(0, 8), row.job->variant, row.job->group,
                std::to_string(row.job->replica), row.reason});
   }
   return table;
 }
 
-// exact: all columns in full precision, for summary.csv; otherwise those that people are shown.
-TextTable JobTable(const std::vector<JobResult>& rows, bool exact) {
-  std::vector<JobColumn> columns;
+// A row for each job, with all columns.
+TextTable JobTable(const std::vector<JobResult>& rows) {
+  const std::vector<JobColumn> columns = JobColumns(rows);
   std::vector<std::string> header;
-  for (JobColumn& column : JobColumns(rows)) {
-    if (!exact && column.title.empty()) continue;
-    header.push_back(exact ? column.name : (column.words ? "" : ">") + column.title);
-    columns.push_back(std::move(column));
-  }
+  for (const JobColumn& column : columns) header.push_back(column.name);
   TextTable table(header);
   for (const JobResult& row : rows) {
-    if (!exact && table.rows().size() > kMostRowsOnPage) break;
     std::vector<std::string> cells;
-    for (const JobColumn& column : columns) {
-      const JobCell cell = column.cell(row);
-      cells.push_back(exact ? cell.exact : cell.shown);
-    }
+    for (const JobColumn& column : columns) cells.push_back(column.cell(row).text);
     table.Add(cells);
   }
   return table;
@@ -397,27 +341,6 @@ Json SummaryJson(const BatchPlan& plan, const std::vector<JobResult>& rows) {
           {"jobs", jobs}};
 }
 
-Report PageOf(const BatchPlan& plan, const std::vector<JobResult>& rows) {
-  Report report;
-  report.title = "pushid: batch of " + std::to_string(rows.size()) + " jobs";
-  report.subtitle = plan.path + ", recordings " + plan.manifest + ", pushid " + Version();
-  ReportSection variants{"variants", "Variants"}, failures{"failures", "Failures"},
-      warnings{"warnings", "Warnings"}, jobs{"jobs", "Jobs"};
-  variants.Show("estimates over groups", VariantTable(rows));
-  variants.Show("errors on held-out recordings", HeldOutTable(rows));
-  variants.Show("bootstrap: spread over the replicas of each group", BootstrapTable(rows));
-  failures.Show("", FailureTable(rows));
-  failures.Say(failures.tables.empty() ? "None." : "The next run retries failed jobs.");
-  warnings.Show("", WarningTable(rows));
-  warnings.Say(warnings.tables.empty() ? "None." : "");
-  if (rows.size() > kMostRowsOnPage) {
-    jobs.Say("The first " + std::to_string(kMostRowsOnPage) + "; summary.csv has all of them.");
-  }
-  jobs.Show("", JobTable(rows, false));
-  report.sections = {variants, failures, warnings, jobs};
-  return report;
-}
-
 }  // namespace
 
 std::vector<JobResult> ReadResults(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
@@ -427,9 +350,8 @@ std::vector<JobResult> ReadResults(const BatchPlan& plan, const std::vector<Batc
 }
 
 void WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& rows) {
-  OrFail(WriteFileAtomically(plan.dir + "/summary.csv", CsvOf(JobTable(rows, true))));
+  OrFail(WriteFileAtomically(plan.dir + "/summary.csv", CsvOf(JobTable(rows))));
   OrFail(WriteJson(plan.dir + "/summary.json", SummaryJson(plan, rows)));
-  OrFail(WriteFileAtomically(plan.dir + "/summary.html", ToPage(PageOf(plan, rows))));
 }
 
 std::string SummaryText(const std::vector<JobResult>& rows) {

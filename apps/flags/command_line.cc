@@ -163,7 +163,7 @@ Error NoSuchFlag(const std::string& name) {
   std::vector<std::string> known;
   for (const FlagInfo& flag : OwnFlags()) known.push_back(flag.name);
   std::string meant = ClosestName(name, known);
-  // For "out" all outputs are suggested.
+  // All outputs are suggested for "out".
   for (const std::string& one : known) {
     if (!meant.empty() && !EndsWith(meant, "_" + name)) break;
     if (EndsWith(one, "_" + name)) meant += (meant.empty() ? "" : " or --") + one;
@@ -286,20 +286,6 @@ void CheckRange(const char* flag, double value, double lowest, double highest) {
   text << "--" << flag << " is " << value << "; it must lie between " << lowest << " and "
        << highest;
   throw Error{text.str()};
-}
-
-void TakeLength(const std::string& unit, double scale, std::optional<LengthUnit>* length_unit,
-                std::optional<double>* length_scale) {
-  if (scale != 0.0 && !unit.empty()) {
-    throw Error{"--length_scale is given together with --length_unit; give one of them"};
-  }
-  if (scale != 0.0) {
-    const std::string problem = LengthScaleProblem(scale);
-    if (!problem.empty()) throw Error{"--length_scale " + problem};
-    *length_scale = scale;
-  }
-  if (unit.empty()) return;
-  OrFail(ParseName("--length_unit", unit, &length_unit->emplace()));
 }
 
 std::map<std::string, std::string> EffectiveFlags() {

@@ -67,8 +67,11 @@ void TakeInRange(const char* flag, Value value, double lowest, double highest, T
 
 // Copies --length_unit or --length_scale, whichever has a value. Errors: both; an invalid unit or
 // scale.
-void TakeLength(const std::string& unit, double scale, std::optional<LengthUnit>* length_unit,
-                std::optional<double>* length_scale);
+inline void TakeLength(const std::string& unit, double scale,
+                       std::optional<LengthUnit>* length_unit,
+                       std::optional<double>* length_scale) {
+  OrFail(ChooseLength("--", unit, scale, length_unit, length_scale));
+}
 
 // The effective flags of this executable that are part of a result: not outputs, threads,
 // verbosity.

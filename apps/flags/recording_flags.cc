@@ -103,11 +103,7 @@ std::vector<Recording> LoadFlaggedRecordings(const std::vector<std::string>& ids
   Warnings found;
   Result<std::vector<Recording>> recordings = LoadRecordings(manifest.value(), options, &found);
   if (recordings.ok()) {
-    std::vector<Finding> facing;
-    for (const Recording& recording : recordings.value()) {
-      for (Finding& finding : FacingFindings(recording)) facing.push_back(std::move(finding));
-    }
-    for (const std::string& warning : FindingTexts(facing)) found.emplace_back(warning);
+    for (Warning& doubt : FacingWarnings(recordings.value())) found.push_back(std::move(doubt));
   }
   WarnGrouped(found);
   if (warnings != nullptr) *warnings = found;

@@ -1,5 +1,5 @@
 // apps: predictions in Python: from the first frame and the push, from frames as they come, as
-// whole bodies, on formations, as most probable paths, and of people who stand.
+// whole bodies, on formations, and of people who stand.
 #include <algorithm>
 #include <array>
 
@@ -7,12 +7,11 @@
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/bodies/restoration_files.h"
-#include "ident/forecasts/most_probable_path.h"
 #include "ident/formations/formation_run.h"
-#include "ident/prediction/frequency_response.h"
 #include "ident/prediction/futures.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/prediction.h"
+#include "ident/problem/linear_loop.h"
 #include "models/formation.h"
 #include "models/rollout.h"
 
@@ -295,67 +294,6 @@ py::dict OnFormation(const Model& model, const std::string& shape, int people, d
   return dict;
 }
 
-py::dict Between(const Model& model, const std::string& start, const std::string& end, int frames,
-                 double fps, double mass, double rod) {
-  const PathEnd from = Unwrapped(ParsePathEnd("start", start, true), Fault::kUsage);
-  const PathEnd to = Unwrapped(ParsePathEnd("end", end, false), Fault::kUsage);
-  if (!(mass > 0.0) || !(rod > 0.0) || !(fps > 0.0)) {
-    Raise(Fault::kUsage, Error{"mass, rod and fps must be above 0"});
-  }
-  const IdentifiedModel identified = IdentifiedOf(model);
-  auto found = WithoutGil([&] {
-    return PathBetween(identified, {mass, rod, 0.0}, fps, from, to, frames);
-  });
-  const ProbablePath path = Unwrapped(std::move(found), Fault::kUsage);
-  const auto noise = [&](int t, int n) { return path.noise.At(t, n); };
-  return py::dict("states"_a = StatesOf(path.states, 1),
-                  "noise"_a = TableArray(path.states.num_frames(), 1, 4, noise),
-                  "action"_a = path.action(), "noise_action"_a = path.noise_action,
-                  "divergence_action"_a = path.divergence_action);
-}
-
-// One number of each bin.
-template <typename Value>
-Array Column(const std::vector<FrequencyBin>& bins, Value value) {
-  const int size = static_cast<int>(bins.size());
-  return Reshaped(
-      TableArray(size, 1, 1, [&](int i, int) { return std::array<double, 1>{value(bins[i])}; }),
-      {size});
-}
-
-py::dict ResponseDict(const FrequencyResponse& response) {
-  const auto column = [&response](auto value) { return Column(response.bins, value); };
-  py::dict dict(
-      "name"_a = response.Name(), "input_unit"_a = response.InputUnit(),
-      "output_unit"_a = response.OutputUnit(), "persons"_a = response.people,
-      "recordings"_a = response.recordings,
-      "frequency"_a = column([](const FrequencyBin& bin) { return bin.hz; }),
-      "gain"_a = column([](const FrequencyBin& bin) { return std::exp(bin.log_gain); }),
-      "log_gain_error"_a = column([](const FrequencyBin& bin) { return bin.log_gain_error; }),
-      "phase"_a = column([](const FrequencyBin& bin) { return bin.phase; }),
-      "phase_error"_a = column([](const FrequencyBin& bin) { return bin.phase_error; }),
-      "coherence"_a = column([](const FrequencyBin& bin) { return bin.coherence; }),
-      "people"_a = column([](const FrequencyBin& bin) { return double(bin.people); }));
-  if (!response.has_model) return dict;
-  dict["model_gain"] = column([](const FrequencyBin& bin) { return std::exp(bin.model_log_gain); });
-  dict["model_phase"] = column([](const FrequencyBin& bin) { return bin.model_phase; });
-  return dict;
-}
-
-py::dict ResponsesOf(const Model& model, const std::vector<SharedRecording>& recordings) {
-  const IdentifiedModel identified = IdentifiedOf(model);
-  const auto responses =
-      WithoutGil([&] { return FrequencyResponses(identified, Pendulums(recordings)); });
-  py::dict dict;
-  for (const FrequencyResponse& response : responses) {
-    // Recordings whose segments last differently long are apart.
-    std::string key = response.Key();
-    for (int i = 2; dict.contains(key); ++i) key = response.Key() + "_" + std::to_string(i);
-    dict[py::str(key)] = ResponseDict(response);
-  }
-  return dict;
-}
-
 py::dict LoopDict(const Model& model, double mass, double rod) {
   if (!(mass > 0.0) || !(rod > 0.0)) Raise(Fault::kUsage, Error{"mass and rod must be above 0"});
   const IdentifiedModel identified = IdentifiedOf(model);
@@ -380,8 +318,6 @@ py::dict LoopDict(const Model& model, double mass, double rod) {
 void BindPredictions(py::module_* module) {
   module->def("predict", &PredictOn);
   module->def("simulate_formation", &OnFormation);
-  module->def("path_between", &Between);
-  module->def("frequency_response", &ResponsesOf);
   module->def("loop", &LoopDict);
   py::class_<Online>(*module, "Online")
       .def(py::init<const Model&, const SharedRecording&, int, const std::string&>())

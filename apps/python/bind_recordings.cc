@@ -129,26 +129,17 @@ py::tuple Read(const std::string& manifest, const std::string& setting,
   options.leave_out = leave_out;
   options.keep_all_joints = all_joints;
   options.preparation = {max_gap_s, lowpass_hz, resample_fps};
-  if (!length_unit.empty()) options.length_unit = Named<LengthUnit>("length_unit", length_unit);
-  if (length_scale != 0.0) {
-    const std::string problem = LengthScaleProblem(length_scale);
-    if (!problem.empty()) Raise(Fault::kUsage, Error{"length_scale " + problem});
-    if (options.length_unit) {
-      Raise(Fault::kUsage,
-            Error{"length_scale is given together with length_unit; give one of them"});
-    }
-    options.length_scale = length_scale;
-  }
+  Check(ChooseLength("", length_unit, length_scale, &options.length_unit, &options.length_scale),
+        Fault::kUsage);
   Check(CheckPreparation(options.preparation), Fault::kUsage);
   Warnings warnings;
   auto read = WithoutGil([&] { return LoadRecordings(manifest, options, &warnings); });
+  std::vector<Recording> loaded = Unwrapped(std::move(read), Fault::kData);
+  for (Warning& doubt : FacingWarnings(loaded)) warnings.push_back(std::move(doubt));
   std::vector<SharedRecording> recordings;
-  std::vector<Finding> facing;
-  for (Recording& one : Unwrapped(std::move(read), Fault::kData)) {
-    for (Finding& finding : FacingFindings(one)) facing.push_back(std::move(finding));
+  for (Recording& one : loaded) {
     recordings.push_back(std::make_shared<const Recording>(std::move(one)));
   }
-  for (Warning& doubt : FindingWarnings(facing)) warnings.push_back(std::move(doubt));
   Warn(warnings);
   py::list told;
   for (const Warning& warning : warnings) {
@@ -366,7 +357,7 @@ SharedRecording FromArrays(const Array& hip, const Array& left_ankle, const Arra
   // The rod and the angles, which turn forces into generalized ones, come with the motion.
   Warnings warnings;
   Recording recording = Unwrapped(RecordingFromTracks(tracks, {}, &warnings), Fault::kData);
-  const Warnings ankles = FindingWarnings(FacingFindings(recording));
+  const Warnings ankles = FacingWarnings({recording});
   warnings.insert(warnings.end(), ankles.begin(), ankles.end());
   Warn(warnings);
   if (push.is_none()) return std::make_shared<const Recording>(std::move(recording));

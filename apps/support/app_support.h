@@ -27,7 +27,8 @@ namespace pushid {
 // The fit failed: also what leaves the model's domain.
 inline constexpr int kDone = 0, kBadInput = 1, kFitFailed = 2;
 
-// Before anything is logged. path: argv[0], whose last part is the name that messages begin with.
+// Called before anything is logged. path: argv[0], whose last part is the name that messages begin
+// with.
 void StartLog(const char* path);
 const std::string& ProgramName();
 
@@ -57,11 +58,11 @@ class ProgressLine {
 
 inline constexpr int kInterrupted = 130;  // as shells count SIGINT
 
-// From now on SIGINT ends the process with "pushid-fit: interrupted; WHAT". what: what is kept, and
+// Makes SIGINT end the process with "pushid-fit: interrupted; WHAT". what: what is kept, and
 // how to start again; a second call replaces it.
 void SayWhenInterrupted(const std::string& what);
 
-// As above, for a training into this folder, whose checkpoint is kept.
+// Says so of a training into this folder, whose checkpoint is kept.
 void SayWhenTrainingInterrupted(const std::string& folder);
 
 // Progress of a training: "window, epoch 12: 43 %, 12 s left", where the time left follows from the
@@ -107,7 +108,7 @@ MaybeError WriteModelFile(const std::string& path, const FittedModel& model, int
 // many cores a machine has.
 void SetBlasThreads(int num_threads);
 
-// For programs that train, first of all. An OpenBLAS older than the processor takes its oldest
+// Called first of all by programs that train. An OpenBLAS older than the processor takes its oldest
 // kernels, "Prescott", and training takes twice the time. It chooses when it is loaded, so the
 // program starts once more with OPENBLAS_CORETYPE set; nothing where the user has set that.
 void RestartWithBlasOfProcessor(char** argv);

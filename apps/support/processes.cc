@@ -15,6 +15,7 @@
 #include <filesystem>
 
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/number_text.h"
 
 namespace pushid {
 namespace {
@@ -106,11 +107,7 @@ Error RunInstead(const std::string& name, const std::vector<std::string>& argume
 
 std::string ShellText(const std::vector<std::string>& command) {
   std::string text;
-  for (const std::string& word : command) {
-    text += text.empty() ? "'" : " '";
-    for (char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
-    text += "'";
-  }
+  for (const std::string& word : command) text += (text.empty() ? "" : " ") + ShellQuoted(word);
   return text;
 }
 

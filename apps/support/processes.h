@@ -32,7 +32,7 @@ std::string OwnFolder();
 // arguments. Returns only where that fails.
 Error RunInstead(const std::string& name, const std::vector<std::string>& arguments);
 
-// A command for a shell, every word quoted.
+// A command for a shell, words quoted where they need it.
 std::string ShellText(const std::vector<std::string>& command);
 
 struct ChildEnd {
@@ -59,7 +59,7 @@ class FolderLock {
   }
   ~FolderLock();
 
-  // False where another process has it. Errors: the folder cannot be opened.
+  // Returns false where another process has it. Errors: the folder cannot be opened.
   Result<bool> Take(const std::string& folder);
 
  private:

@@ -100,6 +100,15 @@ std::string Quoted(std::string_view text) {
   return quoted + "'";
 }
 
+std::string ShellQuoted(const std::string& value) {
+  constexpr char kPlain[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=.,:/@%[]";
+  if (!value.empty() && value.find_first_not_of(kPlain) == std::string::npos) return value;
+  std::string quoted = "'";
+  for (const char c : value) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 void AppendDouble(double value, std::string* out) {
   char buffer[32];
   if (value == 0.0) value = 0.0;  // no -0: it reads back equal and looks like a mistake

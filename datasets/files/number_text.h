@@ -34,6 +34,9 @@ std::string NumberProblem(std::string_view token);
 // `text` in single quotes, shortened and with unprintable bytes replaced, fit for a message.
 std::string Quoted(std::string_view text);
 
+// A value as a shell takes it, in a command that is printed: quoted where it needs that.
+std::string ShellQuoted(const std::string& value);
+
 // Texts, characters and whole numbers one after the other.
 template <typename... Parts>
 std::string StrCat(const Parts&... parts) {
@@ -67,7 +70,7 @@ inline constexpr char kBlanks = '\0';  // as a separator: runs of blanks
 // another separator. Of equal counts, that of the one that names hold least often.
 char SeparatorOf(std::string_view names);
 
-// Plural, for messages.
+// The separator's name for messages, in the plural.
 const char* SeparatorName(char separator);
 
 // The cells of a row. A separator in quotes belongs to its cell.

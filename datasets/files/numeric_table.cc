@@ -8,7 +8,6 @@
 #include <numeric>
 #include <unordered_set>
 
-#include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
 
@@ -92,7 +91,6 @@ class TableReader {
       const std::string_view key = line.substr(0, split);
       const std::string_view value = Trimmed(line.substr(std::min(split + 1, line.size())));
       const auto is = [key](const char* name) { return EqualsIgnoringCase(key, name); };
-      if (is("inDegrees")) table_.in_degrees = EqualsIgnoringCase(value, "yes");
       if (is("DataType") && !EqualsIgnoringCase(value, "double")) {
         throw reader_.ErrorHere("DataType is " + Quoted(value) +
                                 ": its cells hold several numbers; flatten the table (OpenSim: "
@@ -256,36 +254,6 @@ Result<double> EvenTimeStep(const NumericTable& table, int time_column) {
                           : "the times do not ascend in even steps: " + Rounded(*at) + " s where " +
                                 Rounded(usual) + " s is usual; resample the file",
                table.path, table.lines[row]};
-}
-
-MaybeError WriteNumericTable(const std::string& path, TableFormat format,
-                             const NumericTable& table) {
-  const bool storage = format == TableFormat::kStorage;
-  const char separator = storage ? '\t' : ',';
-  if (table.chosen.size() != table.names.size() || table.num_rows() == 0) {
-    return Error{"a table without rows, or with columns left out, is not written", path};
-  }
-  std::string text;
-  if (storage) {
-    text = StrCat("pushid\nversion=1\nnRows=", table.num_rows(), "\nnColumns=", table.names.size(),
-                  "\ninDegrees=", table.in_degrees ? "yes" : "no", "\nendheader\n");
-  }
-  const std::size_t columns = table.names.size();
-  for (std::size_t i = 0; i < columns; ++i) {
-    text += table.names[i] + (i + 1 < columns ? separator : '\n');
-  }
-  for (int row = 0; row < table.num_rows(); ++row) {
-    for (std::size_t i = 0; i < columns; ++i) {
-      const double value = table.data[i][row];
-      if (std::isfinite(value)) {
-        AppendDouble(value, &text);
-      } else if (storage) {
-        text += "nan";
-      }
-      text += i + 1 < columns ? separator : '\n';
-    }
-  }
-  return WriteFileAtomically(path, text);
 }
 
 }  // namespace pushid

@@ -27,7 +27,6 @@ enum class TableFormat { kCsv, kStorage };
 
 struct NumericTable {
   std::string path;
-  bool in_degrees = false;                // what a storage file says of its angles
   std::vector<std::string> names;         // of every column
   std::vector<int> chosen;                // the columns read: indices into names
   std::vector<std::vector<double>> data;  // [chosen][row]
@@ -61,9 +60,5 @@ double UpperMedian(std::vector<double> values);
 
 // Steps of a time column in s, or an Error where it does not ascend in even steps (1 %).
 Result<double> EvenTimeStep(const NumericTable& table, int time_column);
-
-// Writes all columns, atomically; NaN as an empty cell (CSV) or nan (storage).
-MaybeError WriteNumericTable(const std::string& path, TableFormat format,
-                             const NumericTable& table);
 
 }  // namespace pushid

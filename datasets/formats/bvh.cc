@@ -539,20 +539,21 @@ Result<BvhPositions> ReadBvhPositions(const std::string& path, const BvhPosition
     result.positions.resize(result.joints.size());
     const std::size_t frames = FramesToReserve(reader, header);
     for (auto& track : result.positions) track.reserve(frames);
-    if (options.keep_values) result.values.reserve(frames * header.skeleton.num_channels());
     BvhKinematics kinematics(header.skeleton, options.metres_per_unit, result.joints);
     std::vector<Eigen::Vector3d> positions(result.joints.size());
+    int row = 0;
     const auto take_row = [&](const std::vector<double>& values) {
       kinematics.Positions(values.data(), positions.data());
-      if (options.keep_values) {
+      if (row >= options.first_kept && row - options.first_kept < options.kept_rows) {
         result.values.insert(result.values.end(), values.begin(), values.end());
       }
+      ++row;
       for (std::size_t i = 0; i < positions.size(); ++i) {
         result.positions[i].push_back(positions[i]);
       }
     };
     const std::vector<bool> all(header.skeleton.num_channels(), true);
-    ReadFrames(&reader, header, options.keep_values ? all : kinematics.UsedValues(), take_row);
+    ReadFrames(&reader, header, options.kept_rows > 0 ? all : kinematics.UsedValues(), take_row);
     result.skeleton = std::move(header.skeleton);
     result.content_hash = reader.HashHex();
     return result;

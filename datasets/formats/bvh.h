@@ -85,7 +85,8 @@ struct BvhPositionOptions {
   // Called once with the skeleton, it returns indices of the joints whose positions are wanted, in
   // the order wanted, or throws an Error; unset: all joints.
   std::function<std::vector<int>(const BvhSkeleton&)> choose_joints;
-  bool keep_values = false;  // of all channels, as they stand: 8 bytes per number
+  // Rows of which the values of all channels are kept, as they stand: 8 bytes per number.
+  int first_kept = 0, kept_rows = 0;
 };
 
 // World positions of chosen joints.
@@ -94,7 +95,7 @@ struct BvhPositions {
   double frame_time_s = 0.0;
   std::vector<int> joints;                              // joint index of each entry of `positions`
   std::vector<std::vector<Eigen::Vector3d>> positions;  // [chosen joint][frame], metres
-  std::vector<double> values;                           // of all frames, as in BvhMotion
+  std::vector<double> values;                           // of the kept rows, as in BvhMotion
   std::string content_hash;                             // XXH3-128 of the file, hex
 
   int num_frames() const { return positions.empty() ? 0 : static_cast<int>(positions[0].size()); }
@@ -106,8 +107,10 @@ Result<BvhPositions> ReadBvhPositions(const std::string& path,
                                       const BvhPositionOptions& options = {});
 
 // Writes `motion` as it stands, atomically. Numbers are the shortest that read back to the same
-// double. A wrong number of values, NaN, no frames or a frame time out of range is an Error. A leaf
-// without an end site gets one at its own place, which other programs insist on.
+// double. A wrong number of values, NaN, no frames or a frame time out of range is an Error; the
+// hierarchy is taken as right, parents before their children and names unique, as the reader and
+// every maker of one have it. A leaf without an end site gets one at its own place, which other
+// programs insist on.
 MaybeError WriteBvh(const std::string& path, const BvhMotion& motion);
 
 // Forward kinematics of a BVH skeleton: world positions from one row of channel values.

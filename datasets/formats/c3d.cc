@@ -1,4 +1,4 @@
-// datasets: C3D files read: the parameter section, events, force platforms, segments, frames.
+// datasets: C3D files read: the parameter section, force platforms, segments, frames.
 #include "datasets/formats/c3d.h"
 
 #include <Eigen/LU>
@@ -140,8 +140,6 @@ double FromVax(std::uint32_t bits) {
   return (bits >> 31) != 0 ? -size : size;
 }
 
-constexpr int kShortLabels = 12345;  // header word 150: event labels have four letters
-constexpr int kHeaderEvents = 18;
 constexpr int kMostPlatforms = 255;
 constexpr char kPlatforms[] = "FORCE_PLATFORM";
 
@@ -165,29 +163,6 @@ C3dPlatform ReadPlatform(const C3dParameters& parameters, int index, int stride)
     platform.calibration(k % 6, k / 6) = number("CAL_MATRIX", 36 * index + k);
   }
   return platform;
-}
-
-// The events of the group EVENT, otherwise those of the header at the start of `bytes`.
-std::vector<C3dEvent> ReadC3dEvents(const C3dParameters& parameters, const C3dBytes& bytes) {
-  std::vector<C3dEvent> events;
-  if (parameters.Find("EVENT", "TIMES") != nullptr) {
-    const std::vector<double> times = parameters.Numbers("EVENT", "TIMES");
-    const std::vector<std::string> labels = parameters.Texts("EVENT", "LABELS");
-    const std::vector<std::string> contexts = parameters.Texts("EVENT", "CONTEXTS");
-    const std::size_t count =
-        std::min<std::size_t>(times.size() / 2, parameters.Whole("EVENT", "USED", 0, 0, 32767, 0));
-    for (std::size_t i = 0; i < count; ++i) {
-      events.push_back({60.0 * times[2 * i] + times[2 * i + 1], i < labels.size() ? labels[i] : "",
-                        i < contexts.size() ? contexts[i] : ""});
-    }
-    return events;
-  }
-  const bool four_letters = bytes.Word(298) == kShortLabels;
-  const int count = std::min<int>(bytes.Word(300), kHeaderEvents);
-  for (int i = 0; four_letters && i < count; ++i) {
-    events.push_back({bytes.Real(304 + 4 * i), WithoutPadding(bytes.Text(396 + 4 * i, 4)), ""});
-  }
-  return events;
 }
 
 // Without USED, there are as many platforms as have a TYPE or channels.
@@ -240,8 +215,8 @@ int SegmentsOf(const C3dFile& file) {
 
 // The poses of segments in a C3D file (group ROTATION, as Theia3D and Visual3D write them).
 //
-// From the block ROTATION:DATA_START on stand, for every frame, ROTATION:RATIO times (once, where
-// it is not said) ROTATION:USED poses of 17 floats each: a 4 x 4 matrix by columns, segment to
+// The block ROTATION:DATA_START begins the poses, for every frame ROTATION:RATIO times (once, where
+// it is not said) ROTATION:USED of 17 floats each: a 4 x 4 matrix by columns, segment to
 // world, whose last column is the segment's origin in POINT:UNITS, and its reliability, negative
 // where the segment was not seen.
 //
@@ -296,7 +271,6 @@ class Reader {
     ReadNames();
     ReadFrames();
     AddC3dRotations(bytes_, &file_);
-    file_.events = ReadC3dEvents(file_.parameters, bytes_);
     ReadC3dPlatforms(&file_);
     return std::move(file_);
   }

@@ -1,5 +1,5 @@
-// datasets: C3D files (c3d.org's public format): trajectories of markers, analog channels, events
-// and force platforms in one binary file.
+// datasets: C3D files (c3d.org's public format): trajectories of markers, analog channels and force
+// platforms in one binary file. Events are not read.
 //
 //   Result<C3dFile> file = ReadC3d("trial.c3d");
 //   file.value().points[0][frame]   // of point_names[0], in point_unit
@@ -93,12 +93,6 @@ struct C3dParameters {
   std::vector<std::string> Texts(std::string_view group, const std::string& name) const;
 };
 
-struct C3dEvent {
-  double time_s = 0.0;  // on the clock whose frame 1 is at 0
-  std::string label;
-  std::string context;  // Left, Right, General; may be empty
-};
-
 // The place of a force platform and the channels it fills, as the file has them, right or wrong;
 // what it does not say is NaN, no channels, or type 0 (evaluated, and judged, by force_sensors.h).
 struct C3dPlatform {
@@ -128,7 +122,6 @@ struct C3dFile {
   std::vector<std::vector<Eigen::Vector3d>> points;  // [point][frame]; NaN where it was not seen
   int frames_without_points = 0;                     // how many there are, where `points` is empty
   std::vector<C3dAnalogChannel> analog;
-  std::vector<C3dEvent> events;
   std::vector<C3dPlatform> platforms;
   int platform_zero_first = 0, platform_zero_last = 0;  // frames from 1 without load; 0: none
   C3dParameters parameters;                             // everything, as it stands

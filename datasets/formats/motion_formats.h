@@ -26,7 +26,7 @@ struct MotionFormatRow {
   MotionFormat value;
   const char* title;                   // as people write it
   std::array<const char*, 2> endings;  // of file names, whatever the case; null: none
-  // Null: the file holds a skeleton and the motion of its joints, which bvh.h reads.
+  // The reader; null: the file holds a skeleton and the motion of its joints, which bvh.h reads.
   Result<PointMotion> (*read)(const std::string& path, const PointReadOptions& options);
   std::optional<TableFormat> table = std::nullopt;  // of files that are tables of numbers
 };

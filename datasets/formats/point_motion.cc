@@ -8,7 +8,6 @@
 #include <unordered_map>
 #include <utility>
 
-#include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
@@ -292,8 +291,8 @@ bool IsForceColumn(const std::string& name) {
   return end < 3 || name[end - 3] != '_' || name[end - 2] != 'p';
 }
 
-// Beside names as "force", a platform's force ("left_v" or "left_f"), and beside it its centre of
-// pressure and moments ("left_p", "left_m").
+// Forces are told by their names: those with "force" in them, a platform's ("left_v" or "left_f"),
+// and beside it its centre of pressure and moments ("left_p", "left_m").
 PointMotion WithoutForces(const PointMotion& motion) {
   PointMotion points = motion;
   points.names.clear();
@@ -327,39 +326,6 @@ Result<PointMotion> ReadStoragePoints(const std::string& path, const PointReadOp
 
 Result<PointMotion> ReadTrc(const std::string& path, const PointReadOptions& options) {
   return Caught([&] { return TrcReader(path, options).Read(); });
-}
-
-MaybeError WriteTrc(const std::string& path, const PointMotion& motion) {
-  const std::size_t markers = motion.positions.size();
-  if (markers == 0 || markers != motion.names.size() || motion.num_frames() == 0 ||
-      !(motion.rate_hz > 0.0)) {
-    return Error{"a motion without points, frames or rate is not written", path};
-  }
-  const std::string rate = DoubleText(motion.rate_hz), frames = std::to_string(motion.num_frames());
-  std::string text = "PathFileType\t4\t(X/Y/Z)\tpushid.trc\n";
-  text +=
-      "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\t"
-      "OrigNumFrames\n";
-  text += StrCat(rate, '\t', rate, '\t', frames, '\t', markers, '\t',
-                 NameOf(motion.unit.value_or(LengthUnit::kMillimetre)), '\t', rate, "\t1\t", frames,
-                 "\nFrame#\tTime");
-  for (const std::string& name : motion.names) text += '\t' + name + "\t\t";
-  text += "\n\t";
-  for (std::size_t i = 1; i <= markers; ++i) {
-    for (const char* axis : {"\tX", "\tY", "\tZ"}) text += StrCat(axis, i);
-  }
-  text += "\n\n";
-  for (int frame = 0; frame < motion.num_frames(); ++frame) {
-    text += StrCat(frame + 1, '\t', DoubleText(frame / motion.rate_hz));
-    for (const auto& track : motion.positions) {
-      for (int i = 0; i < 3; ++i) {
-        text += '\t';
-        if (track[frame].allFinite()) AppendDouble(track[frame][i], &text);
-      }
-    }
-    text += '\n';
-  }
-  return WriteFileAtomically(path, text);
 }
 
 }  // namespace pushid

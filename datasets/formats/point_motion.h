@@ -96,8 +96,4 @@ Result<PointMotion> ReadStoragePoints(const std::string& path,
 // count.
 Result<PointMotion> ReadTrc(const std::string& path, const PointReadOptions& options = {});
 
-// Writes all points of the motion (positions in motion.unit, millimetres when unset), atomically;
-// points not seen as empty cells.
-MaybeError WriteTrc(const std::string& path, const PointMotion& motion);
-
 }  // namespace pushid

@@ -32,8 +32,9 @@ bool IsCrowdCsv(const std::string& path);
 Result<PointMotion> ReadTrajectoryText(const std::string& path,
                                        const PointReadOptions& options = {});
 
-// Atomically; positions in m. Names that are whole numbers are the ids, otherwise people count from
-// 0 and comments of the text give their names. A person has no row for a frame without them.
+// Writes atomically; positions are in m. Names that are whole numbers are the ids, otherwise people
+// count from 0 and comments of the text give their names. A person has no row for a frame without
+// them.
 MaybeError WriteTrajectoryText(const std::string& path, const PointMotion& motion);
 
 struct CrowdPlace {

@@ -49,6 +49,22 @@ std::string LengthScaleProblem(double metres) {
          Rounded(kSmallest) + " to " + Rounded(kLargest);
 }
 
+MaybeError ChooseLength(const std::string& before, const std::string& unit, double scale,
+                        std::optional<LengthUnit>* length_unit,
+                        std::optional<double>* length_scale) {
+  if (scale != 0.0) {
+    if (!unit.empty()) {
+      return Error{before + "length_scale is given together with " + before +
+                   "length_unit; give one of them"};
+    }
+    const std::string problem = LengthScaleProblem(scale);
+    if (!problem.empty()) return Error{before + "length_scale " + problem};
+    *length_scale = scale;
+  }
+  if (unit.empty()) return std::nullopt;
+  return ParseName(before + "length_unit", unit, &length_unit->emplace());
+}
+
 std::string LengthText(double metres_per_unit) {
   for (const LengthUnitRow& row : kLengthUnits) {
     if (metres_per_unit == MetresPer(row.value)) return row.name;

@@ -44,6 +44,12 @@ std::optional<LengthUnit> UnitThatGives(double files_length, double shortest, do
 // 0; it must ..."; empty where it is fine.
 std::string LengthScaleProblem(double metres);
 
+// Sets the unit or the metres of a file's lengths, whichever is given ("" and 0: not given).
+// Errors: both; an invalid one. before: "--" where they are flags.
+MaybeError ChooseLength(const std::string& before, const std::string& unit, double scale,
+                        std::optional<LengthUnit>* length_unit,
+                        std::optional<double>* length_scale);
+
 // "mm", or "0.0564 m each" where it is no unit.
 std::string LengthText(double metres_per_unit);
 
@@ -53,7 +59,7 @@ std::string LengthText(double metres_per_unit);
 // and forward ("z", "+x", "-y", upper or lower case). Its rows are forward, up x forward and up.
 // Error (without a place): not an axis, or both along the same line.
 Result<Eigen::Matrix3d> AxesRotation(const std::string& up, const std::string& forward);
-// As above of axes that may be left out, which are z and x then; throws the Error.
+// The rotation of axes that may be left out, which are z and x then; throws the Error.
 Eigen::Matrix3d AxesGiven(const std::string& up, const std::string& forward);
 
 // Frame rates that files and manifests may give.

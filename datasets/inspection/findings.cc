@@ -563,4 +563,12 @@ Warnings FindingWarnings(const std::vector<Finding>& findings) {
   return {texts.begin(), texts.end()};
 }
 
+Warnings FacingWarnings(const std::vector<Recording>& recordings) {
+  std::vector<Finding> found;
+  for (const Recording& recording : recordings) {
+    for (Finding& finding : FacingFindings(recording)) found.push_back(std::move(finding));
+  }
+  return FindingWarnings(found);
+}
+
 }  // namespace pushid

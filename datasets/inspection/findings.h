@@ -31,7 +31,7 @@ namespace pushid {
 // Rejected: the best lag of F's double integral, with drag and stiffness as nuisances: on two-link
 // people who stand it was off by 0.1 to 0.3 s, and its gain 0.2.
 //
-// False alarms of what is found by it: ident/push/README.md.
+// The false alarms of this comparison are counted in ident/push/README.md.
 
 struct PushAndMotion {
   double speed = 0.0;  // m/s: J / M of the push, with those that overlap it
@@ -101,12 +101,15 @@ std::vector<Finding> FindingsOf(const PendulumRecording& recording);
 std::vector<Finding> FacingFindings(const Recording& recording);
 std::vector<Finding> FindingsOf(const Recording& recording);
 
-// For each recording the index of an earlier one with the same motion under another id; -1: none.
+// Indices of earlier recordings with the same motion under another id, one for each; -1: none.
 // (A bootstrap's replica holds a recording several times, under one id.)
 std::vector<int> CopyOf(const std::vector<PendulumRecording>& recordings);
 
 // Findings of all recordings, copies among them.
 std::vector<Finding> FindingsOf(const std::vector<PendulumRecording>& recordings);
+
+// Warnings of FacingFindings, as recordings are loaded.
+Warnings FacingWarnings(const std::vector<Recording>& recordings);
 
 // The findings that a fit, a prediction and pushid-push report.
 std::vector<Finding> FitFindings(std::vector<Finding> findings);

@@ -52,7 +52,7 @@ constexpr double kSideways = 0.8;  // rad between the way of a walk and where th
 constexpr double kStride = 1.0;    // s, about
 constexpr double kWalked = 0.3;    // m; less has no direction
 
-// Across `up`; zero where it is not seen.
+// The part of a vector across `up`; zero where it is not seen.
 Eigen::Vector3d Across(const Eigen::Vector3d& v, const Eigen::Vector3d& up) {
   return v.allFinite() ? Eigen::Vector3d(v - v.dot(up) * up) : Eigen::Vector3d::Zero();
 }
@@ -63,16 +63,6 @@ double Angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 std::string Degrees(double radians) {
   return StrCat(std::lround(radians * 180.0 / M_PI), " degrees");
-}
-
-// Frames in which all of the chosen points were seen have their mean, others NaN.
-Track MeanOf(const PointMotion& motion, const std::vector<int>& chosen) {
-  Track mean(motion.num_frames(), Eigen::Vector3d::Zero());
-  for (int index : chosen) {
-    for (int t = 0; t < motion.num_frames(); ++t) mean[t] += motion.positions[index][t];
-  }
-  for (Eigen::Vector3d& position : mean) position /= static_cast<double>(chosen.size());
-  return mean;
 }
 
 // Frames on end in which one of the chosen points was not seen.
@@ -126,15 +116,10 @@ class MotionInspector {
   void Gaps() {
     std::vector<std::pair<int, std::string>> hidden;  // frames, point
     for (std::size_t i = 0; i < motion_.positions.size(); ++i) {
-      std::vector<bool> seen;
-      int missing = 0;
-      for (const Eigen::Vector3d& position : motion_.positions[i]) {
-        seen.push_back(position.allFinite());
-        missing += seen.back() ? 0 : 1;
-      }
+      const std::vector<Eigen::Vector3d>& track = motion_.positions[i];
+      const auto missing = static_cast<int>(std::count_if(
+          track.begin(), track.end(), [](const auto& place) { return !place.allFinite(); }));
       if (missing > 0) hidden.emplace_back(missing, motion_.names[motion_.chosen[i]]);
-      found_.point_names.push_back(motion_.names[motion_.chosen[i]]);
-      found_.seen.push_back(std::move(seen));
     }
     if (hidden.empty()) return;
     std::stable_sort(hidden.begin(), hidden.end(),
@@ -146,9 +131,9 @@ class MotionInspector {
   }
 
   void Body(const PendulumJoints& joints) {
-    hip_ = MeanOf(motion_, joints.hip);
-    left_ = MeanOf(motion_, joints.left_ankle);
-    right_ = MeanOf(motion_, joints.right_ankle);
+    hip_ = MeanTrack(motion_.positions, joints.hip);
+    left_ = MeanTrack(motion_.positions, joints.left_ankle);
+    right_ = MeanTrack(motion_.positions, joints.right_ankle);
     const int frames = motion_.num_frames();
     const auto seen = [this](int t) { return (hip_[t] + left_[t] + right_[t]).allFinite(); };
     while (first_ < frames && !seen(first_)) ++first_;
@@ -183,7 +168,7 @@ class MotionInspector {
       const std::vector<int>& chosen = joints.*row.joints;
       const bool lost = chosen.empty() || LongestHidden(motion_, chosen) > gap;
       if (!row.required && lost) continue;
-      person.*row.track = MeanOf(motion_, chosen);
+      person.*row.track = MeanTrack(motion_.positions, chosen);
       for (Eigen::Vector3d& position : person.*row.track) position = to_project * position;
     }
     found_.steps = FindSteps(person, motion_.rate_hz);
@@ -252,8 +237,9 @@ class MotionInspector {
     up[axis] = rod_[axis] < 0.0 ? -1.0 : 1.0;
     if (pelvis_.known()) {
       *by = "the pelvis";
-      to_the_left_ = Across(
-          MeanOf(motion_, pelvis_.left)[first_] - MeanOf(motion_, pelvis_.right)[first_], up);
+      to_the_left_ = Across(MeanTrack(motion_.positions, pelvis_.left)[first_] -
+                                MeanTrack(motion_.positions, pelvis_.right)[first_],
+                            up);
       if (!to_the_left_.isZero()) return "";
     }
     *by = "the ankles";

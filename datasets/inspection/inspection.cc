@@ -40,9 +40,10 @@ std::string Span(double least, double most) {
 
 // How the ground of a recording moved: in its file, and at the frames.
 void InspectGround(const ManifestRecording& entry, const Recording& recording, Inspection* found) {
-  const bool markers = entry.ground.csv.empty();
-  const std::string kind = markers ? "markers" : NameOf(entry.ground.quantity);
-  const double fps = recording.fps, rate = markers ? fps : GroundOfCsv(entry).rate_hz;
+  const auto tracks = Caught([&] { return GroundOfCsv(entry); });
+  if (!tracks.ok()) return found->Warn(tracks.error().ToString());
+  const std::string kind = NameOf(entry.ground.quantity);
+  const double fps = recording.fps, rate = tracks.value().rate_hz;
   double farthest = 0.0, acceleration = 0.0, tilt = 0.0;
   const std::vector<GroundPose>& poses = recording.ground;
   for (size_t t = 0; t < poses.size(); ++t) {
@@ -343,10 +344,6 @@ void LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
   if (!file.points.empty()) LookAtPoints(OrThrow(PointsOfC3d(file)), mapping, found);
   if (!file.analog.empty()) LookAtAnalog(file, found);
   LookAtPlatforms(file, found);
-  for (const C3dEvent& event : file.events) {
-    found->Fact("event", Rounded(event.time_s, 4) + " s " + event.label +
-                             (event.context.empty() ? "" : " (" + event.context + ")"));
-  }
 }
 
 void LookAtPush(Inspection* found) {
@@ -492,15 +489,6 @@ std::vector<std::string> MassTexts(const std::vector<PendulumRecording>& recordi
                     " kg: one id is one person; correct the masses or the ids");
   }
   return texts;
-}
-
-std::string ShellQuoted(const std::string& value) {
-  constexpr char kPlain[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=.,:/@%[]";
-  if (!value.empty() && value.find_first_not_of(kPlain) == std::string::npos) return value;
-  std::string quoted = "'";
-  for (const char c : value) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
 }
 
 std::string InspectionText(const Inspection& inspection) {

@@ -37,13 +37,11 @@ struct Inspection {
   nlohmann::ordered_json ground = nlohmann::ordered_json::array(), plates = ground;
 
   // Data of the picture; empty where the file has no such thing.
-  double rate_hz = 0.0;                  // of hip and seen
-  std::vector<Eigen::Vector3d> hip;      // m, file's axes, less that of the first frame seen
-  std::vector<std::string> point_names;  // of seen
-  std::vector<std::vector<bool>> seen;   // [point][frame]
-  std::vector<InspectedSignal> forces;   // N
-  int onset_frame = -1;                  // the hip's first 2 cm
-  std::optional<PersonSteps> steps;      // forward is where the person faces
+  double rate_hz = 0.0;                 // of hip
+  std::vector<Eigen::Vector3d> hip;     // m, file's axes, less that of the first frame seen
+  std::vector<InspectedSignal> forces;  // N
+  int onset_frame = -1;                 // the hip's first 2 cm
+  std::optional<PersonSteps> steps;     // forward is where the person faces
 
   void Fact(const std::string& what, const std::string& text) { facts.emplace_back(what, text); }
   void Warn(const std::string& text) { warnings.push_back(text); }
@@ -57,9 +55,6 @@ Result<Inspection> Inspect(const std::string& path, const ColumnMapping& mapping
 // Masses of one person that differ by more than 5 % between recordings: an id is
 // one person. "S01 weighs 62.7 to 70 kg: ..."
 std::vector<std::string> MassTexts(const std::vector<PendulumRecording>& recordings);
-
-// A value as a shell takes it, in a command that is printed: quoted where it needs that.
-std::string ShellQuoted(const std::string& value);
 
 // "file: format", the facts and the warnings, one a line.
 std::string InspectionText(const Inspection& inspection);

@@ -48,7 +48,7 @@ Eigen::Vector3d MeanOf(const Track& track, int begin, int end) {
   return sum / (end - begin);
 }
 
-// Horizontal, m/s, by least squares.
+// Horizontal speed, m/s: the slope of a line by least squares.
 double SpeedAt(const Track& track, int frame, double fps) {
   const int frames = static_cast<int>(track.size());
   const int wing = std::max(1, static_cast<int>(std::lround(kSlopeWindow * fps)));

@@ -1,11 +1,12 @@
-// datasets: ground that moves, from columns or from markers on it, and force platforms at the
-// frames of a motion, from C3D files and tables.
+// datasets: ground that moves, from columns, and force platforms at the frames of a motion, from
+// C3D files and tables.
 #include "datasets/loading/laboratory_record.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
@@ -144,137 +145,6 @@ double GroundSpeedAtFirst(const std::vector<GroundPose>& poses, double dt) {
   return slope.cwiseMin(first).maxCoeff();
 }
 
-namespace {
-
-using Track = std::vector<Eigen::Vector3d>;
-
-constexpr double kGroundGap = 0.1;      // s, of a marker: longer ones are not filled
-constexpr double kMarkersApart = 0.01;  // m, rms about a line: less tells no tilt about it
-
-Eigen::Matrix3Xd AboutMiddle(const std::vector<Eigen::Vector3d>& marks, Eigen::Vector3d* middle) {
-  Eigen::Matrix3Xd about(3, marks.size());
-  for (size_t i = 0; i < marks.size(); ++i) about.col(i) = marks[i];
-  *middle = about.rowwise().mean();
-  return about.colwise() - *middle;
-}
-
-// Marks on one line, or one named twice, leave the tilt about it open.
-void CheckApart(const std::vector<Eigen::Vector3d>& marks, const ManifestGround& ground,
-                const std::string& path) {
-  Eigen::Vector3d middle;
-  const Eigen::VectorXd spread = DecomposeRight(AboutMiddle(marks, &middle)).values;
-  const double off = spread[1] / std::sqrt(static_cast<double>(marks.size()));
-  if (off >= kMarkersApart) return;
-  throw Error{"the markers of the ground (" + ListOfNames(ground.markers) +
-                  ") lie on a line within " + Rounded(1000.0 * off, 2) +
-                  " mm, which leaves the tilt about it open; name one beside it, " +
-                  Rounded(1000.0 * kMarkersApart) + " mm or more",
-              path};
-}
-
-// The turn that takes the marks of frame 0 to those of a frame best (Kabsch 1976), and where it and
-// the shift of their middle take the point `under` the person, about which the ground tilts.
-void AddRigid(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to,
-              const Eigen::Vector3d& under, GroundTracks* tracks) {
-  Eigen::Vector3d a, b;
-  const Eigen::Matrix3Xd before = AboutMiddle(from, &a), now = AboutMiddle(to, &b);
-  const Eigen::Matrix3d turn = NearestRotation(now * before.transpose());
-  const Eigen::Vector3d normal = turn.col(2);  // where the ground's z points
-  tracks->shift.push_back(b + turn * (under - a) - under);
-  tracks->tilt.emplace_back(std::asin(std::clamp(normal[0], -1.0, 1.0)),
-                            std::atan2(-normal[1], normal[2]), 0.0);
-}
-
-// A marker that slides, falls off or was exchanged for another moves the ground as it never moved.
-void CheckRigid(const std::vector<Track>& marks, const ManifestGround& ground,
-                const std::string& path) {
-  for (size_t a = 0; a < marks.size(); ++a) {
-    for (size_t b = 0; b < a; ++b) {
-      double mean = 0.0, square = 0.0, farthest = 0.0;
-      size_t at = 0;
-      const auto frames = static_cast<double>(marks[a].size());
-      for (size_t t = 0; t < marks[a].size(); ++t) mean += (marks[a][t] - marks[b][t]).norm();
-      mean /= frames;
-      for (size_t t = 0; t < marks[a].size(); ++t) {
-        const double off = std::abs((marks[a][t] - marks[b][t]).norm() - mean);
-        square += off * off / frames;
-        if (off > farthest) farthest = off, at = t;
-      }
-      if (square <= kRigidMarkers * kRigidMarkers) continue;
-      throw Error{
-          StrCat("the markers ", ground.markers[b], " and ", ground.markers[a],
-                 " of the ground are not rigid: their distance scatters by ",
-                 Rounded(1000.0 * std::sqrt(square), 2), " mm about ", Rounded(1000.0 * mean, 3),
-                 " mm, most at frame ", at, ", and may by ", Rounded(1000.0 * kRigidMarkers),
-                 " mm; leave out the one that moves on the platform"),
-          path};
-    }
-  }
-}
-
-// Short gaps are filled, and told; longer ones are errors.
-void CloseGaps(const ManifestRecording& entry, const std::string& path, double rate,
-               std::vector<Track>* marks, Warnings* warnings) {
-  for (size_t m = 0; m < marks->size(); ++m) {
-    const std::string name = "the marker " + entry.ground.markers[m] + " of the ground";
-    std::vector<double> weight((*marks)[m].size(), 1.0);
-    const GapCount count =
-        FillGaps(static_cast<int>(std::lround(kGroundGap * rate)), &(*marks)[m], &weight);
-    const auto gap = std::find(weight.begin(), weight.end(), 0.0);
-    if (gap != weight.end()) {
-      throw Error{StrCat(name, " is not seen at frame ", gap - weight.begin(), " for longer than ",
-                         Rounded(kGroundGap), " s; fill the gap, or leave the marker out"),
-                  path};
-    }
-    if (count.gaps == 0) continue;
-    WarnOf(entry.id,
-           StrCat(name, " has ", CountText(count.gaps, "gap"), ", ", count.filled_frames,
-                  " frames in all, filled by ", count.gaps == 1 ? "a cubic" : "cubics"),
-           warnings);
-  }
-}
-
-// The ground of the markers that the entry names, in the first person's file: the rigid motion of
-// what is under that person. Short gaps are filled, with a warning; longer ones are Errors, which
-// are thrown, and so are markers on a line or whose distances change (kRigidMarkers).
-GroundTracks GroundOfMarkers(const ManifestRecording& entry, const Recording& recording,
-                             const GroundReading& reading, Warnings* warnings) {
-  const std::string path = ResolvePath(entry.manifest, entry.motion[0]);
-  PointReadOptions options;
-  options.choose = [&](const std::vector<std::string>& names) {
-    std::vector<int> chosen;
-    for (const std::string& marker : entry.ground.markers) {
-      const auto found = std::find(names.begin(), names.end(), marker);
-      if (found == names.end()) throw UnknownNameError(path, "marker", names, marker);
-      chosen.push_back(static_cast<int>(found - names.begin()));
-    }
-    return chosen;
-  };
-  PointMotion read = OrThrow(ReadPointMotion(path, entry.motion_format, options));
-  std::vector<Track>& marks = read.positions;
-  GroundTracks tracks{{path, reading.file_fps, read.first_time_s, 0, 0, marks[0].size()}};
-  CloseGaps(entry, path, tracks.rate_hz, &marks, warnings);
-  const RecordedPerson& person = recording.people[0];
-  const Eigen::Matrix3d axes = AxesGiven(person.file_up, person.file_forward);
-  for (Track& mark : marks) {
-    for (Eigen::Vector3d& v : mark) v = reading.metres_per_unit * (axes * v);
-  }
-  CheckRigid(marks, entry.ground, path);
-  const auto at = [&](int frame) {
-    std::vector<Eigen::Vector3d> now;
-    for (const Track& mark : marks) now.push_back(mark[frame]);
-    return now;
-  };
-  const int frames = static_cast<int>(marks[0].size());
-  const int first = std::clamp(entry.first_frame, 0, frames - 1);
-  CheckApart(at(first), entry.ground, path);
-  const Eigen::Vector3d under = 0.5 * (person.left_ankle[0] + person.right_ankle[0]);
-  for (int t = 0; t < frames; ++t) AddRigid(at(first), at(t), under, &tracks);
-  return tracks;
-}
-
-}  // namespace
-
 GroundTracks GroundOfCsv(const ManifestRecording& entry) {
   const ManifestGround& ground = entry.ground;
   const std::string path = ResolvePath(entry.manifest, ground.csv);
@@ -302,20 +172,14 @@ GroundTracks GroundOfCsv(const ManifestRecording& entry) {
 }
 
 Result<std::vector<GroundPose>> LoadGround(const ManifestRecording& entry,
-                                           const Recording& recording, const GroundReading& reading,
-                                           Warnings* warnings) {
+                                           const Recording& recording, double lowpass_hz) {
   return Caught([&] {
     const ManifestGround& ground = entry.ground;
-    const bool markers = ground.csv.empty();
-    GroundTracks tracks =
-        markers ? GroundOfMarkers(entry, recording, reading, warnings) : GroundOfCsv(entry);
-    // Markers have the rate that counts for the motion, whatever the file says.
-    const double start =
-        ground.start_s.value_or(markers ? tracks.first_s + entry.first_frame / tracks.rate_hz
-                                        : recording.people[0].skipped_s);
+    GroundTracks tracks = GroundOfCsv(entry);
+    const double start = ground.start_s.value_or(recording.people[0].skipped_s);
     CheckLasts(tracks, "the record of the ground lasts", start, 0.5, recording);
     const double fps = recording.fps;
-    LowPassTo(fps, reading.lowpass_hz, &tracks);
+    LowPassTo(fps, lowpass_hz, &tracks);
     std::vector<GroundPose> poses;
     for (int t = 0; t < recording.num_frames(); ++t) {
       poses.push_back(Sampled(tracks, (start + t / fps - tracks.first_s) * tracks.rate_hz));
@@ -329,6 +193,8 @@ Result<std::vector<GroundPose>> LoadGround(const ManifestRecording& entry,
 }
 
 namespace {
+
+using Track = std::vector<Eigen::Vector3d>;
 
 void CheckWeight(const std::string& file, const RecordedPerson& person) {
   double vertical = 0.0;
@@ -354,16 +220,21 @@ void CheckWeight(const std::string& file, const RecordedPerson& person) {
               file};
 }
 
-double MeanDistance(const std::vector<PlateSample>& plates, const RecordedPerson& person) {
-  double sum = 0.0;
-  int seen = 0;
+// Distances of the centre of pressure from the middle of a person's ankles, m, where it is known.
+std::vector<double> Distances(const std::vector<PlateSample>& plates,
+                              const RecordedPerson& person) {
+  std::vector<double> distances;
   for (size_t t = 0; t < plates.size() && t < person.left_ankle.size(); ++t) {
     if (plates[t].weight <= 0.0) continue;
-    sum +=
-        (plates[t].centre - 0.5 * (person.left_ankle[t] + person.right_ankle[t])).head<2>().norm();
-    ++seen;
+    const Eigen::Vector3d feet = 0.5 * (person.left_ankle[t] + person.right_ankle[t]);
+    distances.push_back((plates[t].centre - feet).head<2>().norm());
   }
-  return sum / std::max(1, seen);
+  return distances;
+}
+
+double MeanDistance(const std::vector<PlateSample>& plates, const RecordedPerson& person) {
+  const std::vector<double> all = Distances(plates, person);
+  return std::accumulate(all.begin(), all.end(), 0.0) / std::max<double>(1.0, all.size());
 }
 
 // In a file of several people, the named one must stand nearest to where platforms are pressed.
@@ -384,14 +255,10 @@ void CheckPerson(const std::string& file, const Recording& recording, int named)
 }
 
 void CheckCentre(const std::string& file, const RecordedPerson& person) {
-  int far = 0, seen = 0;
-  for (size_t t = 0; t < person.plates.size() && t < person.left_ankle.size(); ++t) {
-    if (person.plates[t].weight <= 0.0) continue;
-    const Eigen::Vector3d feet = 0.5 * (person.left_ankle[t] + person.right_ankle[t]);
-    far += (person.plates[t].centre - feet).head<2>().norm() > kFarFromFeet;
-    ++seen;
-  }
-  if (2 * far <= seen) return;
+  const std::vector<double> all = Distances(person.plates, person);
+  const auto far = std::count_if(all.begin(), all.end(),
+                                 [](double distance) { return distance > kFarFromFeet; });
+  if (2 * far <= static_cast<long>(all.size())) return;
   throw Error{"the centre of pressure is " + Rounded(MeanDistance(person.plates, person), 2) +
                   " m from the ankles on average: platforms and markers must share their origin "
                   "and axes (up, forward), and centres must be in metres",
@@ -559,8 +426,8 @@ PlateTracks PlatesOfC3d(const std::string& path, const ManifestPlates& plates,
 constexpr double kLoaded = 30.0;       // N
 constexpr double kNearOrigin = 0.005;  // m: there a centre may be zero
 
-// Where the platform is pressed and its centre is not known, the one known before stands in, or the
-// first; NaN where none is. The samples where this is so under load.
+// Puts the centre known before, or the first, in the place of those that are not known while the
+// platform is pressed; NaN where none is. Returns the samples where this is so under load.
 std::vector<int> FillCentres(const Track& force, Track* centre) {
   const auto pressed = [&](size_t i) { return force[i].z() >= kPressed; };
   const auto known = [&](size_t i) { return SeenPosition((*centre)[i]).allFinite(); };

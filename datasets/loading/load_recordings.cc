@@ -79,9 +79,8 @@ using Track = std::vector<Eigen::Vector3d>;
 // One person of a recording from the file that holds their motion.
 struct LoadedPerson {
   RecordedPerson person;
-  double fps = 0.0;              // the manifest's, otherwise the file's
-  double metres_per_unit = 1.0;  // of the file
-  std::string file_hash;         // of the file (and of the mapping, where there is one)
+  double fps = 0.0;       // the manifest's, otherwise the file's
+  std::string file_hash;  // of the file (and of the mapping, where there is one)
 };
 
 // The joints or points of a motion file that a person is read from, whatever its format.
@@ -137,7 +136,7 @@ class PersonLoader {
     joints_ = Overlaid(entry_.subjects[index_].joints, Overlaid(entry_.joints, mapping_.joints));
     const bool crowd = HoldsCrowd(entry_.motion_format) ||
                        (entry_.motion_format == MotionFormat::kCsv && IsCrowdCsv(path_));
-    if (crowd && !joints_.hip) throw Error{kCrowdIsNoRecording, path_};
+    if (crowd && !joints_.Of(kBodyHip)) throw Error{kCrowdIsNoRecording, path_};
     if (HasSkeleton(entry_.motion_format)) {
       ReadSkeleton();
     } else {
@@ -146,7 +145,6 @@ class PersonLoader {
     SetRate();
     LoadedPerson loaded;
     loaded.fps = fps_;
-    loaded.metres_per_unit = motion_.metres_per_unit;
     loaded.file_hash = mapping_hash_ + motion_.content_hash;
     RecordedPerson& person = loaded.person;
     person.subject_id = entry_.subjects[index_].id;
@@ -187,7 +185,8 @@ class PersonLoader {
     motion_.metres_per_unit = MetresGiven().value_or(motion_.metres_per_unit);
     BvhPositionOptions options;
     options.metres_per_unit = motion_.metres_per_unit;
-    options.keep_values = options_.keep_all_joints;
+    options.first_kept = entry_.first_frame;
+    options.kept_rows = options_.keep_all_joints ? 1 : 0;
     options.choose_joints = [this](const BvhSkeleton& skeleton) {
       return Choose(skeleton.Names(), &skeleton);
     };
@@ -200,12 +199,8 @@ class PersonLoader {
       motion_.parents.push_back(bvh.skeleton.joints[joint].parent);
     }
     if (options_.keep_all_joints) {
-      const std::ptrdiff_t channels = bvh.skeleton.num_channels();
-      const auto rows = static_cast<std::ptrdiff_t>(bvh.values.size()) / channels;
-      const auto first =
-          bvh.values.begin() + channels * std::min<std::ptrdiff_t>(entry_.first_frame, rows - 1);
       motion_.skeleton =
-          FileSkeleton{std::move(bvh.skeleton), {first, first + channels}, motion_.metres_per_unit};
+          FileSkeleton{std::move(bvh.skeleton), std::move(bvh.values), motion_.metres_per_unit};
     }
   }
 
@@ -225,7 +220,7 @@ class PersonLoader {
     // A base of support at the origin of its log: elsewhere 0, 0, 0 is a point that was not seen.
     for (int base : motion_.places.left_ankle) {
       Track& track = motion_.tracks[base];
-      const bool is_base = joints_.others.count(kBaseRole) > 0;
+      const bool is_base = joints_.of_role.count(kBaseRole) > 0;
       if (is_base && NeverSeen(track)) track.assign(track.size(), Eigen::Vector3d::Zero());
     }
     const double rate = mapping_.frame_rate > 0.0 ? mapping_.frame_rate : points.rate_hz;
@@ -377,19 +372,9 @@ class PersonLoader {
     }
   }
 
-  static Track Mean(const std::vector<Track>& tracks, const std::vector<int>& chosen) {
-    if (chosen.empty()) return {};
-    Track mean = tracks[chosen[0]];
-    for (std::size_t frame = 0; frame < mean.size(); ++frame) {
-      for (std::size_t i = 1; i < chosen.size(); ++i) mean[frame] += tracks[chosen[i]][frame];
-      mean[frame] /= static_cast<double>(chosen.size());
-    }
-    return mean;
-  }
-
   void Take(RecordedPerson* person) {
     for (const PendulumTrack& row : kPendulumTracks) {
-      person->*row.track = Mean(motion_.tracks, motion_.places.*row.joints);
+      person->*row.track = MeanTrack(motion_.tracks, motion_.places.*row.joints);
     }
     if (!options_.keep_all_joints) return;
     person->joint_names = motion_.names;
@@ -484,7 +469,6 @@ Recording Load(const Manifest& manifest, const ManifestRecording& entry, const L
         "the files of its motion",
         entry.manifest, entry.line};
   }
-  GroundReading reading;
   ContentHash hash;  // of the files' hashes, so that contents cannot slide from one into the next
   for (std::size_t i = 0; i < entry.subjects.size(); ++i) {
     LoadedPerson loaded = entry.plates_alone
@@ -492,10 +476,7 @@ Recording Load(const Manifest& manifest, const ManifestRecording& entry, const L
                               : PersonLoader(manifest, entry, i, options, warnings).Load();
     hash.Add(loaded.file_hash);
     RecordedPerson& person = loaded.person;
-    if (i == 0) {
-      recording.fps = loaded.fps;
-      reading = {loaded.metres_per_unit, recording.fps, options.preparation.lowpass_hz};
-    }
+    if (i == 0) recording.fps = loaded.fps;
     if (loaded.fps != recording.fps) {
       throw Error{"the file gives " + Rounded(loaded.fps) + " frames per second, but " +
                       recording.people[0].file + " gives " + Rounded(recording.fps) +
@@ -518,10 +499,10 @@ Recording Load(const Manifest& manifest, const ManifestRecording& entry, const L
   recording.content_hash = hash.Hex();
   OrThrow(PrepareMotion(options.preparation, &recording));
   if (entry.ground.given()) {
-    recording.ground = OrThrow(LoadGround(entry, recording, reading, warnings));
+    recording.ground = OrThrow(LoadGround(entry, recording, options.preparation.lowpass_hz));
   }
   for (const ManifestPlates& plates : entry.plates) {
-    LoadPlates(entry, plates, reading.lowpass_hz, &recording, warnings);
+    LoadPlates(entry, plates, options.preparation.lowpass_hz, &recording, warnings);
   }
   return recording;
 }

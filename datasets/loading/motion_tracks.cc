@@ -55,14 +55,14 @@ constexpr double kShortestAdult = 0.5, kLongestAdult = 1.5;  // m, of rods
 
 using Eigen::Vector3d;
 
-// Per frame, from the neighbour beyond where it was seen; otherwise that of the straight line.
+// Change per frame from the neighbour beyond, where that was seen; otherwise that of the line.
 Vector3d Slope(const std::vector<Vector3d>& track, int at, int beyond, const Vector3d& line) {
   const bool seen =
       beyond >= 0 && beyond < static_cast<int>(track.size()) && track[beyond].allFinite();
   return seen ? Vector3d((track[at] - track[beyond]) / (at - beyond)) : line;
 }
 
-// Between the seen frames `before` and `after`.
+// Fills the frames between `before` and `after`, which were seen.
 void FillInside(int before, int after, bool curved, std::vector<Vector3d>* track) {
   const Vector3d from = (*track)[before], to = (*track)[after];
   const double span = after - before;
@@ -277,7 +277,7 @@ void LowPass(double cutoff_hz, double rate_hz, std::vector<Vector3d>* track) {
   const int frames = static_cast<int>(track->size());
   if (frames < 3) return;
   const Biquad filter = Butterworth(cutoff_hz, rate_hz);
-  // Long enough for the filter to forget its start.
+  // Wings are long enough for the filter to forget its start.
   const int wing = std::min(frames - 1, static_cast<int>(std::ceil(2.0 * rate_hz / cutoff_hz)));
   std::vector<Vector3d> x;
   x.reserve(frames + 2 * wing);
@@ -509,6 +509,17 @@ std::vector<Eigen::Vector4d> PushAtHeight(const RecordedPerson& person, int star
     rows.push_back(GeneralizedForce<double>(body, pose(start + t).q, forces[t], fraction));
   }
   return rows;
+}
+
+std::vector<Eigen::Vector3d> MeanTrack(const std::vector<std::vector<Eigen::Vector3d>>& tracks,
+                                       const std::vector<int>& chosen) {
+  if (chosen.empty()) return {};
+  Track mean = tracks[chosen[0]];
+  for (std::size_t frame = 0; frame < mean.size(); ++frame) {
+    for (std::size_t i = 1; i < chosen.size(); ++i) mean[frame] += tracks[chosen[i]][frame];
+    mean[frame] /= static_cast<double>(chosen.size());
+  }
+  return mean;
 }
 
 Eigen::Vector3d ValueBetween(const std::vector<Eigen::Vector3d>& track, double at) {

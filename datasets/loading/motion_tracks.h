@@ -95,7 +95,7 @@ int ResampledFrames(int frames, double from_hz, double to_hz);
 std::vector<Eigen::Vector3d> ResampleTrack(const std::vector<Eigen::Vector3d>& track,
                                            double from_hz, double to_hz);
 
-// Per new frame, the least weight of the frames that it is interpolated from.
+// The weight of each new frame: the least of the frames that it is interpolated from.
 std::vector<double> ResampleWeights(const std::vector<double>& weight, double from_hz,
                                     double to_hz);
 
@@ -132,6 +132,11 @@ double HeightFraction(const Body& body, const Vector4<double>& q, double height)
 std::vector<Eigen::Vector4d> PushAtHeight(const RecordedPerson& person, int start,
                                           const std::vector<Eigen::Vector3d>& forces,
                                           const PushHeight& height);
+
+// The mean of some tracks, frame by frame: not finite where one of them is not. chosen: empty where
+// there is no such track.
+std::vector<Eigen::Vector3d> MeanTrack(const std::vector<std::vector<Eigen::Vector3d>>& tracks,
+                                       const std::vector<int>& chosen);
 
 // Values at even times: cubic through the four nearest samples (Lagrange; of fewer, through all).
 // at: in samples, from 0.

@@ -74,8 +74,8 @@ struct PendulumRecording {
 PendulumRecording MakePendulumRecording(const Recording& recording);
 std::vector<PendulumRecording> MakePendulumRecordings(const std::vector<Recording>& recordings);
 
-// Horizontal and of length 1: of the impulse on the pushed person; without one of the ground's
-// farthest shift; x without either.
+// The direction of the impulse on the pushed person, horizontal and of length 1; without a push
+// that of the ground's farthest shift; x without either.
 Eigen::Vector2d PushDirection(const PendulumRecording& recording);
 
 // The scene in axes turned by so much about the vertical; forces at the recorded poses. The steps

@@ -202,7 +202,7 @@ PendulumJoints ChooseFrom(Source source, const JointMapping& mapping) {
   joints.left_ankle = Choose(source, kLeftAnkle, mapping.Of(kLeftAnkle));
   joints.right_ankle = Choose(source, kRightAnkle, mapping.Of(kRightAnkle));
   if (joints.hip == joints.left_ankle || joints.hip == joints.right_ankle ||
-      (joints.left_ankle == joints.right_ankle && mapping.others.count(kBaseRole) == 0)) {
+      (joints.left_ankle == joints.right_ankle && mapping.of_role.count(kBaseRole) == 0)) {
     throw Error{"hip, left_ankle and right_ankle must be three different " + source.noun() +
                     "s, not " + Quoted(source.names[joints.hip[0]]) + ", " +
                     Quoted(source.names[joints.left_ankle[0]]) + " and " +
@@ -393,11 +393,10 @@ Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
 }
 
 JointMapping Overlaid(const JointMapping& first, const JointMapping& second) {
-  JointMapping overlaid = second;
-  for (int role = 0; role < kBodyJoints; ++role) {
-    if (const auto joint = first.Of(role)) overlaid.Set(role, *joint);
+  JointMapping overlaid = first;
+  for (const auto& [role, joint] : second.of_role) {
+    if (!first.Of(role)) overlaid.Set(role, joint);
   }
-  if (const auto base = first.Of(kBaseRole)) overlaid.Set(kBaseRole, *base);
   return overlaid;
 }
 
@@ -546,24 +545,10 @@ Result<ColumnMapping> ReadColumnMapping(const std::string& path) {
 }
 
 std::optional<JointReference> JointMapping::Of(int role) const {
-  if (role == kBodyHip) return hip;
-  if (role == kLeftAnkle && left_ankle) return left_ankle;
-  if (role == kRightAnkle && right_ankle) return right_ankle;
+  auto found = of_role.find(role);
   const bool of_ankle = role == kLeftAnkle || role == kRightAnkle;
-  const auto found = others.find(of_ankle ? kBaseRole : role);
-  return found == others.end() ? std::nullopt : std::optional(found->second);
-}
-
-void JointMapping::Set(int role, const JointReference& joint) {
-  if (role == kBodyHip) {
-    hip = joint;
-  } else if (role == kLeftAnkle) {
-    left_ankle = joint;
-  } else if (role == kRightAnkle) {
-    right_ankle = joint;
-  } else {
-    others[role] = joint;
-  }
+  if (found == of_role.end() && of_ankle) found = of_role.find(kBaseRole);
+  return found == of_role.end() ? std::nullopt : std::optional(found->second);
 }
 
 JointMapping ReadJointMapping(JsonFields* fields) {
@@ -576,10 +561,10 @@ JointMapping ReadJointMapping(JsonFields* fields) {
   }
   // A robot's log has its base of support, and no ankles.
   if (const std::optional<JointReference> base = ReadJoint(&joints, kBase)) {
-    if (mapping.left_ankle || mapping.right_ankle) {
+    if (mapping.Of(kLeftAnkle) || mapping.Of(kRightAnkle)) {
       joints.Fail(kBase, "is given together with ankles; it stands for both of them");
     }
-    mapping.others[kBaseRole] = *base;
+    mapping.Set(kBaseRole, *base);
   }
   joints.OnlyAsked();
   fields->Add(joints);

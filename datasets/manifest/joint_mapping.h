@@ -114,7 +114,7 @@ JointMapping ReadJointMapping(JsonFields* fields);
 std::optional<LengthUnit> ReadLengthUnit(JsonFields* fields, const char* key);
 
 // "length_scale", the metres in one of the file's lengths; nullopt when the key is not there.
-// Beside "length_unit" it is a mistake.
+// Both keys beside each other are a mistake.
 std::optional<double> ReadLengthScale(JsonFields* fields);
 
 }  // namespace pushid

@@ -65,17 +65,7 @@ ManifestGround ReadGroundKey(JsonFields* fields) {
   ManifestGround ground;
   if (!fields->Has("ground")) return ground;
   JsonFields given = fields->Inside(fields->At("ground"), "ground", "ground");
-  ground.csv = given.OptionalText("csv", "");
-  ground.markers = ReadNames(&given, "markers");
-  if (!given.failed() && ground.csv.empty() == ground.markers.empty()) {
-    given.Fail("",
-               "needs either \"csv\" (a file of how the ground moves) or \"markers\" (at least "
-               "three, on the ground)");
-  }
-  if (!given.failed() && !ground.markers.empty() && ground.markers.size() < 3) {
-    given.Fail("markers", StrCat("names ", ground.markers.size(),
-                                 "; a shift and a tilt differ only with three or more"));
-  }
+  ground.csv = given.Text("csv", "the file of how the ground moves");
   ground.quantity = given.Choice("quantity", GroundQuantity::kDisplacement);
   ground.start_s = given.NumberIfAny("start", kClock);
   ReadAxes(&given, &ground.up, &ground.forward);
@@ -148,9 +138,6 @@ void CheckPlatesAlone(const ManifestRecording& recording, JsonFields* fields) {
   if (!measured) {
     fields->Fail("force_plates", "needs \"use\": \"measure\" and \"file\", once: with " + alone +
                                      "nothing else was measured");
-  }
-  if (!recording.ground.markers.empty()) {
-    fields->Fail("ground", "names markers, of which " + alone + "says there are none; give a csv");
   }
 }
 

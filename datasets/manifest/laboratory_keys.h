@@ -1,7 +1,6 @@
 // datasets: the laboratory of a manifest's recording: ground that moves, force platforms.
 //
 //   "ground": {"csv": "platform.csv", "quantity": "displacement", "start": 0.5}
-//   "ground": {"markers": ["plate1", "plate2", "plate3"]}
 //   "force_plates": {"use": "measure", "file": "trial.c3d", "plates": ["platform:1"]}
 // The room's README has the tables of their keys.
 #pragma once
@@ -27,12 +26,11 @@ constexpr EnumNames<GroundQuantity, 3> Names(GroundQuantity) {
 }
 
 struct ManifestGround {
-  std::string csv;                   // relative to the manifest; empty: markers
-  std::vector<std::string> markers;  // on the ground, in the motion's file
+  std::string csv;  // relative to the manifest; empty: the ground rests
   GroundQuantity quantity = GroundQuantity::kDisplacement;
   std::optional<double> start_s;  // the file's clock at frame 0
-  std::string up, forward;        // axes of the file; empty: z and x, of markers the motion's
-  bool given() const { return !csv.empty() || !markers.empty(); }
+  std::string up, forward;        // axes of the file; empty: z and x
+  bool given() const { return !csv.empty(); }
 };
 
 // Whether rollouts are compared with what platforms measured.

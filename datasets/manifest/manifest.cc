@@ -232,11 +232,9 @@ Json JointsJson(const JointMapping& joints, const Json& object) {
   std::vector<int> roles = {kBodyHip, kLeftAnkle, kRightAnkle};
   for (int role = 0; role < kBodyJoints; ++role) roles.push_back(role);
   for (int role : roles) {
-    const bool by_base =
-        (role == kLeftAnkle || role == kRightAnkle) && joints.others.count(kBaseRole) > 0;
-    const std::optional<JointReference> joint = by_base ? std::nullopt : joints.Of(role);
-    SetUnless(!joint.has_value(), RoleName(role).c_str(), joint ? JointJson(*joint) : Json(),
-              &json);
+    const auto joint = joints.of_role.find(role);
+    const bool none = joint == joints.of_role.end();
+    SetUnless(none, RoleName(role).c_str(), none ? Json() : JointJson(joint->second), &json);
   }
   return json;
 }

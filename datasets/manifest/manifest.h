@@ -38,11 +38,11 @@ struct JointReference {
 // The joints that the pendulum is read from, and those that play the body's other roles; whatever
 // is absent is found by default (joint_mapping.h).
 struct JointMapping {
-  std::optional<JointReference> hip, left_ankle, right_ankle;
-  std::map<int, JointReference> others{};  // by role (recording.h)
+  std::map<int, JointReference> of_role;  // recording.h, or kBaseRole
 
+  // The base stands for ankles that are not named.
   std::optional<JointReference> Of(int role) const;
-  void Set(int role, const JointReference& joint);
+  void Set(int role, const JointReference& joint) { of_role[role] = joint; }
 };
 
 // The published manifests' key for `condition`; read where that is not there, never written.

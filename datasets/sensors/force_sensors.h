@@ -42,8 +42,8 @@ std::optional<double> NewtonsIn(std::string_view unit, bool moment = false);
 // Newtons in the unit of a column by its name, "Force (kN)"; 1 where it names none.
 double NewtonsInColumn(const std::string& name);
 
-// Where the sensor was recorded in the file of a person's motion, the choice takes what it lacks
-// from that file: clock at frame 0 and axes.
+// Sets what the choice lacks, clock at frame 0 and axes, where the sensor was recorded in the file
+// of the person's motion.
 void FillFromMotion(const RecordedPerson& person, SensorChoice* choice);
 
 // Errors besides those of the files' readers: no such column, channel or platform (some that exist
@@ -79,7 +79,7 @@ Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path);
 // (+x, +y), 2 (-x, +y), 3 (-x, -y), 4 (+x, -y). Of type 3, a and b are taken without their sign.
 struct PlatformRecord {
   double rate_hz = 0.0;
-  // Per sample, in the file's axes. The force on the person: programs store either it or its
+  // The force on the person at each sample, in the file's axes: programs store either it or its
   // reaction, but a platform can only be pressed, never pulled, so the sign is the one that makes
   // the impulse point out of the surface.
   std::vector<Eigen::Vector3d> force;  // N

@@ -141,35 +141,6 @@ RecordedPerson ObservePerson(const SyntheticOptions& options, const SyntheticRec
   return person;
 }
 
-// Measurements of platforms under the person, which move with the ground.
-std::vector<PlateSample> ObservePlates(const SyntheticOptions& options,
-                                       const SyntheticRecording& made, int n, Random* noise) {
-  std::vector<PlateSample> plates;
-  const Scene& scene = made.scene;
-  const BodyOf<double> body = DynamicBody(options.model, scene.people[n].body, made.parameters[n],
-                                          options.model.stance == Stance::kFixed);
-  for (int t = 0; t < options.frames; ++t) {
-    const int at = std::min(t, options.frames - 2);  // the last frame has no step
-    const PendulumState<double>& state = made.path.At(at, n);
-    const GroundStep& ground = scene.ground.StepAt(at);
-    const Vector4<double> felt =
-        (made.path.At(at + 1, n).qd - state.qd) / scene.dt + ground.acceleration;
-    const ReactionForce<double> force(body, Angles<double>(state.q), state.qd, felt, ground.gravity,
-                                      PushForceAt(scene, n, at));
-    const GroundReactionOf<double> reaction = ReactionOn(force, body.cart_height, state.q);
-    const auto err = [&](double sigma) { return sigma * noise->Normal(); };
-    PlateSample sample;
-    sample.force = {reaction[0] + err(options.plate_noise_n),
-                    reaction[1] + err(options.plate_noise_n),
-                    force.vertical + err(options.plate_noise_n)};
-    sample.centre = {reaction[2] + err(options.plate_noise_m),
-                     reaction[3] + err(options.plate_noise_m), 0.0};
-    sample.weight = 1.0;
-    plates.push_back(sample);
-  }
-  return plates;
-}
-
 std::vector<Subject> DrawSubjects(const SyntheticOptions& options, Random* people, Random* spread) {
   std::vector<Subject> subjects;
   for (int s = 0; s < options.subjects; ++s) {
@@ -204,16 +175,6 @@ void PlaceRow(const SyntheticOptions& options, const std::vector<const Subject*>
     person.start.feet.apart = 2.0 * subject->skeleton.HalfStance().head<2>();
     made->scene.people.push_back(person);
   }
-}
-
-constexpr double kStepStart = 0.3, kStepSeconds = 0.4;       // s
-constexpr double kSine = 0.5;                                // Hz
-constexpr double kSines[] = {0.15, 0.35, 0.65, 1.05, 1.55};  // Hz
-
-// A rise from 0 to 1 with velocity and acceleration zero at both ends (minimum jerk).
-double Smooth(double u) {
-  const double v = std::clamp(u, 0.0, 1.0);
-  return v * v * v * (10.0 - 15.0 * v + 6.0 * v * v);
 }
 
 // Everything is quoted as a fraction of the rod: pelvis centre to ankles, about 0.52 of a person's
@@ -280,7 +241,7 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
   Random people(root.Fork()), motion(root.Fork()), spread(root.Fork());
   const uint64_t own_noise = root.Fork();
   Random noise(options.noise_seed != 0 ? options.noise_seed : own_noise);
-  Random driving(root.Fork()), on_plates(root.Fork());
+  Random driving(root.Fork());
 
   const std::vector<Subject> subjects = DrawSubjects(options, &people, &spread);
   std::vector<SyntheticRecording> result;
@@ -295,14 +256,8 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
       SyntheticRecording made;
       made.scene.dt = 1.0 / options.fps;
       PlaceRow(options, row, &motion, &spread, &made);
-      if (options.ground != GroundKind::kNone) {
-        made.scene.ground = GroundThrough(
-            options.ground == GroundKind::kFile
-                ? options.ground_poses
-                : SyntheticGround(options.ground,
-                                  r % 2 == 0 ? options.ground_size_m : -options.ground_size_m,
-                                  options.frames, made.scene.dt, Eigen::Vector2d::UnitX()),
-            made.scene.dt);
+      if (!options.ground.empty()) {
+        made.scene.ground = GroundThrough(options.ground, made.scene.dt);
       }
       std::vector<Vector4<double>> rows =
           DrawPush(options, made.scene.people[0], strength.acceleration, &motion);
@@ -322,8 +277,6 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
       Recording& recording = made.recording;
       for (int n = 0; n < options.people_in_row; ++n) {
         recording.people.push_back(ObservePerson(options, made, *row[n], n, &noise));
-        if (!options.plates) continue;
-        recording.people[n].plates = ObservePlates(options, made, n, &on_plates);
       }
       recording.ground = made.scene.ground.poses;
       recording.id = id;
@@ -344,22 +297,6 @@ std::vector<Recording> Recordings(const std::vector<SyntheticRecording>& synthet
   std::vector<Recording> recordings;
   for (const SyntheticRecording& made : synthetic) recordings.push_back(made.recording);
   return recordings;
-}
-
-std::vector<GroundPose> SyntheticGround(GroundKind kind, double size, int frames, double dt,
-                                        const Eigen::Vector2d& along) {
-  std::vector<GroundPose> poses(frames, GroundPose::Zero());
-  for (int t = 0; t < frames; ++t) {
-    const double s = t * dt;
-    double shift = 0.0;
-    if (kind == GroundKind::kStep) shift = Smooth((s - kStepStart) / kStepSeconds);
-    if (kind == GroundKind::kSine) shift = Smooth(s) * std::sin(2.0 * M_PI * kSine * s);
-    if (kind == GroundKind::kSumOfSines) {
-      for (double f : kSines) shift += Smooth(s) * std::sin(2.0 * M_PI * f * s);
-    }
-    poses[t].head<2>() = size * shift * along;
-  }
-  return poses;
 }
 
 ParameterSet<double> PublishedTailParameters() {
@@ -469,43 +406,9 @@ BvhMotion Motion(const SyntheticRecording& made, int n) {
   return motion;
 }
 
-std::string GroundFile(const Recording& recording) { return "ground/" + recording.id + ".csv"; }
 // The name of a person's files: in a row one for each.
 std::string OfPerson(const Recording& recording, size_t n) {
   return recording.id + (recording.people.size() > 1 ? StrCat("_", n) : "");
-}
-std::string PlatesFile(const Recording& recording, size_t n) {
-  return "plates/" + OfPerson(recording, n) + ".csv";
-}
-
-// Writes a table of a row for each frame: its time, then the numbers.
-template <typename Row>
-void WriteTimed(const std::string& path, const std::string& names, const Recording& recording,
-                const Row& row) {
-  OrThrow(MakeFolderOf(path));
-  std::string text = "time," + names + "\n";
-  for (int t = 0; t < recording.num_frames(); ++t) {
-    text += DoubleText(t / recording.fps);
-    for (double value : row(t)) text += "," + DoubleText(value);
-    text += "\n";
-  }
-  OrThrow(WriteFileAtomically(path, text));
-}
-
-// Writes the ground's and the platforms' files, where the recording has them.
-void WriteLaboratory(const std::string& folder, const Recording& recording) {
-  if (!recording.ground.empty()) {
-    WriteTimed(folder + "/" + GroundFile(recording), "x,y,theta,phi", recording,
-               [&](int t) { return recording.ground[t]; });
-  }
-  for (size_t n = 0; n < recording.people.size(); ++n) {
-    const std::vector<PlateSample>& plates = recording.people[n].plates;
-    if (plates.empty()) continue;
-    WriteTimed(folder + "/" + PlatesFile(recording, n), "fx,fy,fz,px,py", recording, [&](int t) {
-      const PlateSample& s = plates[t];
-      return std::array{s.force[0], s.force[1], s.force[2], s.centre[0], s.centre[1]};
-    });
-  }
 }
 
 ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::string>& bvh,
@@ -517,20 +420,9 @@ ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::s
     entry.subjects.push_back({person.subject_id, person.mass_kg});
   }
   entry.motion = bvh;
-  entry.joints.hip = JointReference{joints[kHipJoint].name};
-  entry.joints.left_ankle = JointReference{joints[kLeftAnkleJoint].name};
-  entry.joints.right_ankle = JointReference{joints[kRightAnkleJoint].name};
-  if (made.scene.ground.moves()) (*entry.json)["ground"] = {{"csv", GroundFile(recording)}};
-  for (size_t n = 0; n < recording.people.size(); ++n) {
-    if (recording.people[n].plates.empty()) continue;
-    nlohmann::ordered_json plates = {{"use", "measure"}, {"file", PlatesFile(recording, n)}};
-    if (recording.people.size() == 1) {
-      (*entry.json)["force_plates"] = plates;
-    } else {
-      plates["person"] = n;
-      (*entry.json)["force_plates"].push_back(plates);
-    }
-  }
+  entry.joints.Set(kBodyHip, JointReference{joints[kHipJoint].name});
+  entry.joints.Set(kLeftAnkle, JointReference{joints[kLeftAnkleJoint].name});
+  entry.joints.Set(kRightAnkle, JointReference{joints[kRightAnkleJoint].name});
   if (recording.pushes.empty()) return entry;
   const int start = recording.pushes[0].start_frame;
   if (start == 0) entry.push_csv = csv;
@@ -568,7 +460,6 @@ MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOp
         bvh.push_back("bvh/" + OfPerson(made.recording, n) + ".bvh");
         OrThrow(WriteBvh(folder + "/" + bvh.back(), Motion(made, n)));
       }
-      WriteLaboratory(folder, made.recording);
       if (!made.recording.pushes.empty()) {
         OrThrow(WritePushCsv(folder + "/" + csv, made.recording.pushes[0].force));
       }

@@ -84,26 +84,6 @@ ParameterSet<double> PublishedGroupParameters();
 // Values for feet that hold and step (models/stance.h).
 ParameterSet<double> PublishedStanceParameters();
 
-// Motion of the ground of synthetic recordings, along x.
-enum class GroundKind {
-  kNone,
-  kStep,        // a shift within 0.4 s, from 0.3 s on
-  kSine,        // of 0.5 Hz, from rest within a second
-  kSumOfSines,  // of 0.15, 0.35, 0.65, 1.05 and 1.55 Hz, from rest within a second
-  kFile         // SyntheticOptions::ground_poses
-};
-constexpr EnumNames<GroundKind, 5> Names(GroundKind) {
-  return {{{"none", GroundKind::kNone},
-           {"step", GroundKind::kStep},
-           {"sine", GroundKind::kSine},
-           {"sum_of_sines", GroundKind::kSumOfSines},
-           {"file", GroundKind::kFile}}};
-}
-
-// Poses of the ground; size: m, of the step or of each sine; along: horizontal, of length 1.
-std::vector<GroundPose> SyntheticGround(GroundKind kind, double size, int frames, double dt,
-                                        const Eigen::Vector2d& along);
-
 struct SyntheticOptions {
   // The truth. model.push decides what a `net` push is: with kAdded, a force beside all others;
   // with kAsRecorded, the whole generalized force on the person while it lasts.
@@ -125,12 +105,8 @@ struct SyntheticOptions {
   double min_rod_m = 0.82, max_rod_m = 1.02;
   double lean_sigma_rad = 0.02;  // of both angles at frame 0, about upright
 
-  // Ground that moves, and force platforms that move with it and err by so much.
-  GroundKind ground = GroundKind::kNone;
-  double ground_size_m = 0.03;
-  std::vector<GroundPose> ground_poses = {};  // of kFile, one per frame
-  bool plates = false;
-  double plate_noise_m = 0.002, plate_noise_n = 2.0;  // of the centre of pressure, and of forces
+  // Ground that moves: a pose for each frame of every recording; in memory alone.
+  std::vector<GroundPose> ground = {};
 
   bool pushes = true;  // false: nobody is pushed
   // Pushes. `net`: the rising quarter of a sine, which the model's tail completes. `external`: a
@@ -171,8 +147,8 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
 std::vector<Recording> Recordings(const std::vector<SyntheticRecording>& synthetic);
 
 // Writes folder/manifest.json, folder/bvh/<id>.bvh (mm; <id>_<n>.bvh for person n of a row) and
-// folder/push/<id>.csv, making the folders. The manifest's key `synthetic` holds seed, noise and
-// the true parameters by name.
+// folder/push/<id>.csv, making the folders; ground is not written. The manifest's
+// key `synthetic` holds seed, noise and the true parameters by name.
 MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOptions& options,
                                     const std::vector<SyntheticRecording>& recordings);
 

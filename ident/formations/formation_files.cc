@@ -127,9 +127,9 @@ MaybeError WriteFormationRecording(const std::string& folder, const FormationRun
   if (!scene.pushes.empty()) {
     entry.push_kind = scene.pushes.front().kind;
   }
-  entry.joints.hip = JointReference{"Hips"};
-  entry.joints.left_ankle = JointReference{"LeftAnkle"};
-  entry.joints.right_ankle = JointReference{"RightAnkle"};
+  entry.joints.Set(kBodyHip, JointReference{"Hips"});
+  entry.joints.Set(kLeftAnkle, JointReference{"LeftAnkle"});
+  entry.joints.Set(kRightAnkle, JointReference{"RightAnkle"});
   for (int n = 0; n < run.num_people(); ++n) {
     const std::string& name = run.recording.subject_ids[n];
     entry.subjects.push_back({name, scene.people[n].body.mass});

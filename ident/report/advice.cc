@@ -6,7 +6,6 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/inspection/inspection.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/behaviour.h"
 #include "ident/report/report_text.h"

@@ -36,7 +36,6 @@ TEST_F(BatchTest, OneBadVariantCostsItsOwnJobsOnly) {
   EXPECT_EQ(done, 4);
   EXPECT_EQ(failed, 4);
   EXPECT_TRUE(Contains(run.out, "4 done, 4 failed, 0 done before"));
-  EXPECT_TRUE(Contains(ReadText(Path("out/summary.html")), "recording &#39;"));
   EXPECT_EQ(Json(Path("out/summary.json"))["jobs"].size(), 8u);
   // Jobs that are done are not done again; failed ones are tried again.
   EXPECT_TRUE(Contains(Batch(plan).out, "0 done, 4 failed, 4 done before"));
@@ -73,7 +72,8 @@ TEST_F(BatchTest, ReplicasAreThoseOfTheBootstrap) {
 
 // Replicas are spread of the estimate they belong to, and no estimates of their own.
 TEST_F(BatchTest, TheSpreadOverReplicasIsOfEachGroup) {
-  Succeeded(Batch(Plan("group_by = \"subject\"\nbootstrap = 3", {{"a", ""}}), {"--jobs=2"}));
+  const AppRun run = Succeeded(
+      Batch(Plan("group_by = \"subject\"\nbootstrap = 3", {{"a", ""}}), {"--jobs=2"}));
   const nlohmann::ordered_json summary = Json(Path("out/summary.json"));
   std::map<std::string, std::vector<double>> mu;
   for (const auto& job : summary["jobs"]) {
@@ -93,8 +93,7 @@ TEST_F(BatchTest, TheSpreadOverReplicasIsOfEachGroup) {
                 1e-9 * std::abs(mean));
   }
   EXPECT_EQ(found, 2);
-  EXPECT_TRUE(
-      Contains(ReadText(Path("out/summary.html")), "spread over the replicas of each group"));
+  EXPECT_TRUE(Contains(run.out, "bootstrap error"));
 }
 
 TEST_F(BatchTest, FoldsAreScoredOnWhatTheyHoldOut) {
@@ -117,12 +116,8 @@ TEST_F(BatchTest, FoldsAreScoredOnWhatTheyHoldOut) {
   job.erase("warnings");
   EXPECT_EQ(std::count(header.begin(), header.end(), ',') + 1, job.flatten().size() + 1);
   EXPECT_TRUE(Contains(run.out, "held-out hipFDE, m"));
-  const std::string page = ReadText(Path("out/summary.html"));
+  EXPECT_TRUE(Contains(run.out, "held-out hipADE, m"));
   EXPECT_TRUE(Contains(run.out, "3 of 3"));
-  for (const char* column : {"held-out hipADE, m", "held-out hipFDE, m", "solve s", "seconds"}) {
-    EXPECT_TRUE(Contains(page, std::string(">") + column + "</th>")) << column;
-  }
-  EXPECT_TRUE(Contains(page, " +- "));
 }
 
 // A variant that lost a fold is compared on the folds that both have.
@@ -253,7 +248,6 @@ TEST_F(BatchTest, WarningsOfAFitAreInTheTable) {
   Succeeded(Batch(Plan("group_by = \"subject\"", {{"a", ""}})));
   EXPECT_TRUE(Contains(Table("out")[1], "has a frame time of"));
   EXPECT_FALSE(Contains(Table("out")[2], "has a frame time of"));
-  EXPECT_TRUE(Contains(ReadText(Path("out/summary.html")), "has a frame time of"));
   EXPECT_TRUE(Contains(Json(Path("out/summary.json"))["jobs"][0]["warnings"].dump(), "frame time"));
 }
 

@@ -1,5 +1,5 @@
-// The second example of the quickstart: data whose truth is not the fitted model. What is found of
-// it, what is not, and that the report says so.
+// People of another model, tests/studies/laboratory.sh: data whose truth is not the fitted model.
+// What is found of it, what is not, and that the report says so.
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -22,9 +22,8 @@ class LaboratoryApp : public TempDirTest {
 
 TEST_F(LaboratoryApp, FindsTheStiffnessAndSaysThatTheModelIsWrong) {
   setenv("PUSHID_BIN", PUSHID_BIN_DIR, 1);
-  const AppRun run =
-      RunProgram("/bin/bash", {std::string(PUSHID_SOURCE_DIR) + "/apps/quickstart.sh",
-                               "--example=laboratory", "--out=" + Path("lab")});
+  const AppRun run = RunProgram(
+      "/bin/bash", {std::string(PUSHID_SOURCE_DIR) + "/tests/studies/laboratory.sh", Path("lab")});
   unsetenv("PUSHID_BIN");
   ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
   const auto truth = ReadJsonDocument(Path("lab/truth.json")).value().content["synthetic"]["truth"];
@@ -48,18 +47,6 @@ TEST_F(LaboratoryApp, FindsTheStiffnessAndSaysThatTheModelIsWrong) {
   }
   EXPECT_LT(result.find("Kp_theta ("), result.find("not recovered"));
   EXPECT_GT(result.find("reaction_delay ("), result.find("not recovered"));
-}
-
-TEST_F(LaboratoryApp, OtherFlagsAreRefused) {
-  EXPECT_TRUE(
-      Refused(RunApp("pushid-simulate", {"--laboratory=2", "--people=3", "--out=" + Path("a")}),
-              {"--people has no effect with --laboratory"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--laboratory=-1", "--out=" + Path("a")}),
-                      {"--laboratory is -1"}));
-  const AppRun run = RunProgram(
-      "/bin/bash", {std::string(PUSHID_SOURCE_DIR) + "/apps/quickstart.sh", "--example=other"});
-  EXPECT_EQ(run.exit_code, 1);
-  EXPECT_TRUE(Contains(run.err, "'--example=other'"));
 }
 
 }  // namespace

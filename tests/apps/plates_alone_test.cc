@@ -7,7 +7,9 @@
 #include <string>
 
 #include "datasets/loading/load_recordings.h"
+#include "ident/fit/fit_setup.h"
 #include "tests/apps/app_fixture.h"
+#include "tests/simulators/platform_files.h"
 
 namespace pushid {
 namespace {
@@ -16,12 +18,22 @@ class PlatesAloneApp : public AppTest {
  protected:
   // Three people on ground that sways, whom plates alone measure.
   std::string Simulated() {
-    const AppRun run = RunApp(
-        "pushid-simulate",
-        {"--out=" + Path("swaying"), "--people=3", "--recordings_per_person=2", "--stance=fixed",
-         "--ground=sum_of_sines", "--push_kind=none", "--plates", "--frames=1000", "--fps=50",
-         "--set=Kp_theta=1600,Kd_theta=400"});  // off the priors
-    EXPECT_EQ(run.exit_code, 0) << run.err;
+    PlatformOptions options;
+    options.subjects = 3;
+    options.recordings_per_subject = 2;
+    options.model.stance = Stance::kFixed;
+    options.kind = GroundKind::kSumOfSines;
+    options.size_m = 0.0036;
+    options.pushes = false;
+    options.push_kind = PushKind::kExternal;
+    options.frames = 1000;
+    options.fps = 50.0;
+    options.joint_noise_m = 0.002;
+    const auto truth = Unwrapped(SyntheticTruth(options, "Kp_theta=1600,Kd_theta=400"));
+    options.model = truth.options;  // off the priors
+    options.parameters = truth.parameters;
+    const auto made = Unwrapped(MakeOnPlatforms(options));
+    EXPECT_FALSE(WriteOnPlatforms(Path("swaying"), options, made));
     nlohmann::ordered_json json = Json(Path("swaying/manifest.json"));
     truth_ = json["synthetic"]["truth"];
     for (auto& entry : json["recordings"]) {

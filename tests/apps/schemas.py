@@ -36,8 +36,9 @@ def main():
     validator = jsonschema.Draft202012Validator(strict(schema))
     faults = []
     with tempfile.TemporaryDirectory() as folder:
-        for name, flags in {"people": ["--people=2"], "rows": ["--people=2", "--group_size=2"], "lab": ["--laboratory=2"]}.items():
-            subprocess.run([f"{sys.argv[1]}/pushid-simulate", f"--out={folder}/{name}", "--seed=1", *flags],
+        for name, flags in {"people": ["pushid-simulate", "--people=2"], "rows": ["pushid-simulate", "--people=2", "--group_size=2"],
+                            "lab": ["simulate-others", "--laboratory=2"]}.items():
+            subprocess.run([f"{sys.argv[1]}/{flags[0]}", f"--out={folder}/{name}", "--seed=1", *flags[1:]],
                            stdout=subprocess.DEVNULL, check=True)
             content = json.loads(pathlib.Path(folder, name, "manifest.json").read_text())
             faults += [f"{name}: /{'/'.join(map(str, error.absolute_path))}: {error.message[:300]}"

@@ -15,6 +15,7 @@
 #include "datasets/formats/point_motion.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "tests/datasets/c3d_writer.h"
+#include "tests/simulators/table_files.h"
 
 namespace pushid {
 namespace {

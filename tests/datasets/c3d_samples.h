@@ -55,7 +55,6 @@ inline C3dFile SampleC3d() {
       0.0, 0.0, 0.0, 0.0;
   platform.origin = {0.0, 0.0, -40.0};
   file.platforms = {platform};
-  file.events = {{0.5, "Foot Strike", "Left"}, {61.25, "Foot Off", "Right"}};
   return file;
 }
 

@@ -63,8 +63,8 @@ inline std::string WritingProblem(const C3dFile& file) {
   if (frames < 1 || frames > 65535) return "it has " + std::to_string(frames) + " frames";
   if (file.point_names.size() != file.points.size()) return "not every point has a name";
   if (file.points.size() > 2 * kMostEntries || file.analog.size() > 2 * kMostEntries ||
-      file.platforms.size() > kMostEntries || file.events.size() > kMostEntries) {
-    return "it has too many points, channels, events or platforms";
+      file.platforms.size() > kMostEntries) {
+    return "it has too many points, channels or platforms";
   }
   if (!(file.point_rate_hz > 0.0)) return "its frame rate is not above 0";
   for (std::size_t i = 0; i < file.points.size(); ++i) {
@@ -216,8 +216,6 @@ class C3dWriter {
     AnalogParameters();
     Group(3, "FORCE_PLATFORM");
     PlatformParameters();
-    Group(4, "EVENT");
-    EventParameters();
     parameters_.append(2, '\0');  // a name of length 0 ends the list
     FillBlock(&parameters_);
     parameters_[2] = static_cast<char>(parameters_.size() / kC3dBlock);
@@ -275,21 +273,6 @@ class C3dWriter {
               static_cast<double>(file_.platform_zero_last)});
   }
 
-  void EventParameters() {
-    std::vector<std::string> labels, contexts;
-    std::vector<double> times;
-    for (const C3dEvent& event : file_.events) {
-      labels.push_back(event.label);
-      contexts.push_back(event.context);
-      times.push_back(std::floor(event.time_s / 60.0));
-      times.push_back(event.time_s - 60.0 * times.back());
-    }
-    Integers("USED", {}, {static_cast<double>(labels.size())});
-    Texts("LABELS", labels);
-    Texts("CONTEXTS", contexts);
-    Reals("TIMES", {2, labels.size()}, times);
-  }
-
   void Data() {
     const int per_frame = file_.samples_per_frame();
     for (int frame = 0; frame < file_.num_frames(); ++frame) {
@@ -332,7 +315,7 @@ class C3dWriter {
   std::string header_, parameters_, data_;
 };
 
-// Writes points, analog channels, events and platforms (not `parameters`), atomically. Integers are
+// Writes points, analog channels and platforms (not `parameters`), atomically. Integers are
 // scaled to the largest value of the points and of each channel. Names longer than 127 bytes,
 // tracks of unequal length, samples that are not finite and more than 65535 frames are Errors.
 inline MaybeError WriteC3d(const std::string& path, const C3dFile& file) {

@@ -1,6 +1,6 @@
 // C3D files put together byte by byte, after the public description of the format (c3d.org), for
 // what it allows and the project's writer does not make: offsets and unsigned samples, a general
-// scale, events in the header, more frames or channels than their counts hold.
+// scale, more frames or channels than their counts hold.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +21,12 @@ class HandmadeC3d {
     Integers("USED", {1}, {});
   }
 
-  int frames = 3;                // in the data
-  int last_frame = 3;            // as the header says, from 1
-  std::vector<int> raw;          // the sample of each channel, as 16 bits hold it
-  bool floating = false;         // raw samples as floats
-  int points = 1;                // 0: none
-  std::string behind;            // from the block behind the data on
-  std::vector<C3dEvent> events;  // of the header; labels of four letters
+  int frames = 3;         // in the data
+  int last_frame = 3;     // as the header says, from 1
+  std::vector<int> raw;   // the sample of each channel, as 16 bits hold it
+  bool floating = false;  // raw samples as floats
+  int points = 1;         // 0: none
+  std::string behind;     // from the block behind the data on
 
   // Parameters belong to the group before them.
   void Group(const std::string& name) {
@@ -94,8 +93,7 @@ class HandmadeC3d {
   }
 
   // Words from 1: 2 points, 3 samples in a frame, 4 and 5 first and last frame, 7 scale of the
-  // points, 9 block of the data, 10 samples of a channel in a frame, 11 frames per second; 150 says
-  // that 151 counts the events, whose times are from 153 and labels from 199.
+  // points, 9 block of the data, 10 samples of a channel in a frame, 11 frames per second.
   std::string Header(std::size_t parameter_blocks) const {
     std::string header = "\2\x50";
     for (int word : {points, static_cast<int>(raw.size()), 1, last_frame, 0}) Word(word, &header);
@@ -103,13 +101,6 @@ class HandmadeC3d {
     Word(2 + static_cast<int>(parameter_blocks), &header);
     Word(1, &header);
     AppendC3dReal(100.0, processor_, &header);
-    header.resize(298, '\0');
-    Word(events.empty() ? 0 : 12345, &header);
-    Word(static_cast<int>(events.size()), &header);
-    header.resize(304, '\0');
-    for (const C3dEvent& event : events) AppendC3dReal(event.time_s, processor_, &header);
-    header.resize(396, '\0');
-    for (const C3dEvent& event : events) header += (event.label + "    ").substr(0, 4);
     header.resize(512, '\0');
     return header;
   }
@@ -167,12 +158,6 @@ inline HandmadeC3d OffsetC3d(C3dProcessor processor = C3dProcessor::kIntel) {
   file.Reals("GEN_SCALE", {3.0}, {});
   file.Reals("SCALE", {0.5, 1.5}, {2});
   file.Integers("OFFSET", {100, -100}, {2});
-  return file;
-}
-
-inline HandmadeC3d HeaderEventsC3d(C3dProcessor processor = C3dProcessor::kIntel) {
-  HandmadeC3d file(processor);
-  file.events = {{1.5, "RHS", ""}, {2.25, "LTO2", ""}};
   return file;
 }
 

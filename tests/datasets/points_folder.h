@@ -12,6 +12,7 @@
 #include "datasets/formats/point_motion.h"
 #include "tests/datasets/c3d_writer.h"
 #include "tests/datasets/recording_folder.h"
+#include "tests/simulators/table_files.h"
 #include "tests/test_support.h"
 
 namespace pushid {

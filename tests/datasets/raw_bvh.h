@@ -11,7 +11,7 @@ inline Result<BvhMotion> ReadBvh(const std::string& path) {
   return Caught([&] {
     BvhPositionOptions options;
     options.choose_joints = [](const BvhSkeleton&) { return std::vector<int>{0}; };
-    options.keep_values = true;
+    options.kept_rows = 1 << 30;
     BvhPositions read = OrThrow(ReadBvhPositions(path, options));
     return BvhMotion{read.skeleton, read.frame_time_s, read.values};
   });

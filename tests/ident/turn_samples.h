@@ -6,8 +6,8 @@
 
 #include "datasets/loading/generator_data.h"
 #include "datasets/loading/load_recordings.h"
-#include "datasets/synthetic/synthetic_clips.h"
 #include "ident/bodies/body_recording.h"
+#include "tests/simulators/synthetic_clips.h"
 #include "tests/test_support.h"
 
 namespace pushid {

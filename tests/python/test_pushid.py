@@ -416,7 +416,7 @@ def test_stubs_name_everything():
     for name in pushid.__all__:
         assert f"class {name}" in stubs or f"def {name}" in stubs, name
         assert (getattr(pushid, name).__doc__ or "").strip(), name
-    for owner in (pushid.Result, pushid.OnlinePredictor, pushid.Restoration, pushid.Design, pushid.Formation):
+    for owner in (pushid.Result, pushid.OnlinePredictor, pushid.Restoration, pushid.Design):
         for name, member in vars(owner).items():
             if name.startswith("_"):
                 continue

@@ -83,16 +83,6 @@ def test_a_push_unlike_the_fitted_ones_is_warned_of(made, result):
             pass
 
 
-def test_most_probable_paths(made, result, noisy):
-    near, far = (noisy.path_between({"xd": 0.5}, {"x": x, "xd": 0}, frames=60) for x in (0.3, 3.0))
-    assert near["states"].shape == (60, 1, 8) and near["noise"].shape == (60, 1, 4)
-    assert near["action"] < far["action"] and near["states"][-1, 0, 0] == pytest.approx(0.3)
-    with pytest.raises(pushid.UsageError, match="process noise"):
-        result.path_between({"xd": 0.5}, {"x": 0.3}, frames=60)
-    with pytest.raises(pushid.UsageError, match="end"):
-        noisy.path_between({"xd": 0.5}, {"nowhere": 1})
-
-
 @pytest.mark.filterwarnings("ignore:the model was fitted without interaction")
 def test_formations(result):
     line = pushid.simulate_formation(result, "line", 4, push=60.0, onset_bands=True)
@@ -142,8 +132,6 @@ def test_pictures(made, result, monkeypatch):
     low, high = result["mu"].interval
     ends = [end for line in one.lines for end in line.get_xdata()]
     assert any(end == pytest.approx(low) for end in ends) and any(end == pytest.approx(high) for end in ends)
-    axes = result.plot_motion(made[0][0], observed=20)
-    assert len(axes.lines) == 2 and axes.collections  # measured, predicted, the band
     result.profile("mu")
     axes = result.plot("profiles", panel="mu")
     assert axes.lines[0].get_ydata().min() == pytest.approx(0.0, abs=0.01)
@@ -160,19 +148,6 @@ def test_pictures(made, result, monkeypatch):
         result.plot("none")
     with pytest.raises(ValueError, match="panels"):
         result.plot("forest", axes=axes)
-    axes = pushid.simulate_formation(result, "line", 4, push=60.0, onset_bands=True).plot()
-    assert axes.images[0].get_array().shape == (4, 241) and whole(axes)
-
-
-def on_oscillating_ground(seconds=40.0, fps=50.0):
-    """One person on ground that moves by a sum of sines with a period of 10 s, whose hip goes half as far again."""
-    times = np.arange(int(seconds * fps) + 1) / fps
-    along = 0.01 * sum(1.0 - np.cos(2 * np.pi * f * times) for f in (0.2, 0.5, 0.9, 1.3))
-    ground = np.stack([along, 0 * along], axis=1)
-    hip = np.stack([1.5 * along, 0 * along, 0 * along + 1.03], axis=1)
-    ankle = np.stack([along, 0 * along, 0 * along + 0.08], axis=1)
-    return pushid.Recording(hip=hip, left_ankle=ankle + [0, 0.1, 0], right_ankle=ankle - [0, 0.1, 0], mass=80.0, fps=fps,
-                            push=np.zeros((len(times) - 1, 4)), push_kind="external", ground=ground)
 
 
 def test_loop(made, result):
@@ -182,13 +157,3 @@ def test_loop(made, result):
     assert loop["theta"]["phase_margin"] > 0 and loop["theta"]["gain_down"] < 1 < loop["theta"]["stiffness_ratio"]
     with pytest.raises(pushid.UsageError, match="mass"):
         standing.loop(mass=0.0)
-
-
-def test_frequency_response(made, result):
-    assert result.frequency_response(made[0]) == {}
-    found = result.frequency_response([on_oscillating_ground()])
-    assert sorted(found) == ["angle_theta_by_ground_shift"]
-    angle = found["angle_theta_by_ground_shift"]
-    assert angle["input_unit"] == "m" and angle["output_unit"] == "rad" and len(angle["frequency"]) == 4
-    assert {"gain", "phase", "coherence", "log_gain_error", "people", "model_gain"} <= set(angle)
-    assert np.all(angle["gain"] > 0) and len(angle["gain"]) == len(angle["model_phase"])

@@ -177,7 +177,7 @@ def sensor(journey):
                    '[output]\ndir = "batch"\n')
     table = journey.run("pushid-batch", "--plan=plan.toml", "--jobs=2")
     need("3 of 3" in table, "the batch's variants are not compared on all folds")
-    need(os.path.exists(journey.path("batch/summary.html")), "the batch wrote no page")
+    need(os.path.exists(journey.path("batch/summary.csv")), "the batch wrote no table")
 
 
 # CMU's names for the joints of the synthetic skeleton.

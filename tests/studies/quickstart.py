@@ -1,6 +1,6 @@
-"""What apps/quickstart.sh prints, from the command itself, and whether its first seed was a lucky one.
+"""What apps/quickstart.sh and laboratory.sh print, from the commands themselves, and whether the first seed was a lucky one.
 
-laboratory  ident/validation/README.md; the second example; ten seconds
+laboratory  ident/validation/README.md; people of another model; ten seconds
 transcript  README.md; it builds the programs first, minutes the first time
 seeds       ident/README.md; the same study with 300 seeds; half a minute
 
@@ -15,19 +15,19 @@ import studies
 SEEDS = 300
 
 
-def result_of(*flags, **environment):
-    done = subprocess.run(["bash", os.path.join(studies.SOURCE, "apps/quickstart.sh"), *flags], stdout=subprocess.PIPE,
+def result_of(script, *words, **environment):
+    done = subprocess.run(["bash", os.path.join(studies.SOURCE, script), *words], stdout=subprocess.PIPE,
                           stderr=subprocess.DEVNULL, text=True, check=True, env=dict(os.environ, **environment))
     return "```\n" + done.stdout.partition("\n== Result\n")[2].rstrip() + "\n```"
 
 
 def transcript():
-    return result_of()
+    return result_of("apps/quickstart.sh")
 
 
 def laboratory():
     with tempfile.TemporaryDirectory() as folder:
-        return result_of("--example=laboratory", f"--out={folder}", PUSHID_BIN=studies.BIN)
+        return result_of("tests/studies/laboratory.sh", folder, PUSHID_BIN=studies.BIN)
 
 
 def program(name, *arguments):

@@ -6,7 +6,7 @@ fig5     its Fig. 5 without a given end: the most probable of sampled futures, b
 times    how long the commands of these tables took, one core
 
 PUSHID_MOCAP is a folder of clips (default ../shared/cmu_mocap beside the source): of CMU, of Human3.6M with a folder
-per subject, or made by pushid-simulate --clips. Windows are those of --protocol=test where clips are kept apart for
+per subject, or made by simulate-others --clips. Windows are those of --protocol=test where clips are kept apart for
 it, otherwise of the validation clips, which are then not learned from. PUSHID_SDE_STEPS is the number of training
 steps of table2 and fig5 (default 150; the rate is constant, so that shorter trainings are parts of longer ones),
 PUSHID_SDE_SHORT_STEPS that of table3 and times (default 150).

@@ -5,7 +5,7 @@ table3   its Table 3: states and words of motion, of recordings trained on and l
 table4   its Tables 4 and 5: how people see each other (mean, attention, not at all), on recordings left out
 times    how long the trainings of these tables took
 
-Pushed groups are the published ones (PUSHID_RECORDINGS), fold 3 left out; those who talk are made by pushid-simulate
+Pushed groups are the published ones (PUSHID_RECORDINGS), fold 3 left out; those who talk are made by simulate-others
 --turns, the last four left out, with the true states. PUSHID_SDM_STEPS is the number of training steps (default 1500, the
 full length). Forecasts are given 20 frames. MRT is that of peers.py, trained for a tenth of its length; without PyTorch its
 row is missing.
@@ -46,7 +46,7 @@ class Talking:
     @staticmethod
     def run(program, *flags, **options):
         if not os.path.exists(os.path.join(TURNS, "manifest.json")):
-            studies.run("pushid-simulate", "--turns=16", "--frames=240", f"--out={TURNS}", out=None, keep=False)
+            studies.run("simulate-others", "--turns=16", "--frames=240", f"--out={TURNS}", out=None, keep=False)
         return studies.run(program, f"--recordings={TURNS}/manifest.json", *flags, **options)
 
 

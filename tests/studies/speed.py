@@ -195,7 +195,7 @@ def derivatives():
         def run(program, *flags):
             subprocess.run([os.path.join(studies.BIN, program), *flags], check=True, stdout=subprocess.DEVNULL)
 
-        run("pushid-simulate", "--laboratory=4", "--seed=1", f"--out={laboratory}")
+        run("simulate-others", "--laboratory=4", "--seed=1", f"--out={laboratory}")
         ids = ",".join(sorted(name[:-4] for name in os.listdir(os.path.join(laboratory, "force"))))
         run("pushid-push", manifest, f"--ids={ids}", f"--sensor={laboratory}/force/{{id}}.csv",
             f"--out={laboratory}/push/{{id}}.csv", "--update", "--overwrite")

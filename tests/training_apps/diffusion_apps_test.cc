@@ -53,7 +53,7 @@ TEST_F(DiffusionAppTest, CrossValidatesBesidePhysics) {
 
 // Nobody is pushed; who speaks is annotated.
 TEST_F(DiffusionAppTest, GroupsWithoutAPushAreForecastAndTheirStatesCompared) {
-  Succeeded(RunApp("pushid-simulate", {"--turns=4", "--frames=90", "--out=" + Path("t")}));
+  Succeeded(RunApp("simulate-others", {"--turns=4", "--frames=90", "--out=" + Path("t")}));
   const std::string turns = "--recordings=" + Path("t/manifest.json");
   Succeeded(RunApp("pushid-train-generator",
                    {"--published=sdm", turns, "--steps=5", "--batch=2", "--quiet",

@@ -66,9 +66,9 @@ TEST_F(GeneratorAppTest, TrainsForecastsSamplesAndShows) {
   EXPECT_TRUE(Contains(ReadText(Path("p.html")), "</html>"));
 }
 
-// Clips that pushid-simulate makes, SDE's settings, and the windows of the tables.
+// Clips that simulate-others makes, SDE's settings, and the windows of the tables.
 TEST_F(GeneratorAppTest, SdeAsPublishedOnSyntheticClips) {
-  Succeeded(RunApp("pushid-simulate", {"--clips=2", "--frames=220", "--out=" + Path("made")}));
+  Succeeded(RunApp("simulate-others", {"--clips=2", "--frames=220", "--out=" + Path("made")}));
   for (const char* without : {"--without=", "--without=draw,protocol", "--without=gru,operator"}) {
     Succeeded(
         RunApp("pushid-train-generator", {"--published=sde", "--folder=" + Path("made"), without,
@@ -97,8 +97,6 @@ TEST_F(GeneratorAppTest, SdeAsPublishedOnSyntheticClips) {
   EXPECT_TRUE(Refused(Train("g", {"--published=ode"}), {"--published is 'ode'", "sde"}));
   EXPECT_TRUE(Refused(Train("g", {"--without=bones"}), {"--without needs --published=sde"}));
   EXPECT_TRUE(Refused(Train("g", {"--published=sde", "--without=legs"}), {"names 'legs'"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--clips=2", "--people=3", "--out=x"}),
-                      {"--people has no effect with --clips"}));
 }
 
 // Particles hold siMLPe beside them.

@@ -12,7 +12,7 @@ try:
     from ._pushid import DataError, FitError, UsageError
     from ._pushid import version as __version__
     from ._options import options
-    from ._predictions import Formation, OnlinePredictor, Restoration, simulate_formation
+    from ._predictions import OnlinePredictor, Restoration, simulate_formation
     from ._recordings import Recording, Recordings, estimate_push, findings, read, simulate
     from ._results import Design, Parameter, Result, Table, crossvalidate, fit, load
 except ImportError as missing:  # pushid.ldp needs neither the compiled module nor NumPy
@@ -24,6 +24,6 @@ except ImportError as missing:  # pushid.ldp needs neither the compiled module n
         raise ImportError(f"pushid.{name} needs the compiled module and NumPy, and here is no such: {_missing}. Build "
                           "it, see apps/python/README.md; only python3 -m pushid.ldp runs without it")
 
-__all__ = ["DataError", "FitError", "UsageError", "Design", "Formation", "OnlinePredictor", "Parameter", "Recording",
-           "Recordings", "Restoration", "Result", "Table", "crossvalidate", "estimate_push", "findings", "fit", "load",
+__all__ = ["DataError", "FitError", "UsageError", "Design", "OnlinePredictor", "Parameter", "Recording", "Recordings",
+           "Restoration", "Result", "Table", "crossvalidate", "estimate_push", "findings", "fit", "load",
            "options", "read", "simulate", "simulate_formation"]

@@ -5,13 +5,6 @@ import re
 from . import _pushid
 
 
-def _axes(axes):
-    if axes is not None:
-        return axes
-    import matplotlib.pyplot
-    return matplotlib.pyplot.subplots(layout="constrained")[1]  # labels of any length lie within the figure
-
-
 def _looks():
     """Classes of the report's style sheet: {"ink": {"fill": "#222", ...}, ...}; a selector of several counts for each."""
     looks = {}
@@ -132,44 +125,3 @@ def draw(result, name, axes=None, panel=None):
                          for look in (look for _, look in legend) for line, area in [_styles(look, looks)]],
                         [name for name, _ in legend], fontsize="x-small")
     return given if len(given) > 1 else given[0]
-
-
-def motion(result, recording, axes=None, **how):
-    """x of all hips over time: measured, predicted, and the band."""
-    axes = _axes(axes)
-    predicted = result.predict(recording, **how)
-    seconds = [t / recording.fps for t in range(recording.num_frames)]
-    for n, subject in enumerate(recording.subjects):
-        line, = axes.plot(seconds, recording.hip[:, n, 0], label=f"{subject}, measured")
-        path = predicted["hip"][:, n, 0]
-        axes.plot([t / recording.fps for t in range(len(path))], path, "--", color=line.get_color(),
-                  label=f"{subject}, predicted")
-        if "lower90" in predicted:
-            low, high = (predicted[key][:, n, 0] for key in ("lower90", "upper90"))
-            first = predicted["observed"]
-            axes.fill_between([(first + t) / recording.fps for t in range(len(low))], low, high, alpha=0.2,
-                              color=line.get_color())
-    axes.set_xlabel("time, s")
-    axes.set_ylabel("hip, m forwards")
-    axes.legend()
-    return axes
-
-
-def wave(formation, axes=None):
-    """Propagation of a push through people: speed of the hips, onsets, and their bands if there are any."""
-    axes = _axes(axes)
-    speed = formation["speed"].T
-    people, frames = speed.shape
-    fastest = abs(speed).max() or 1.0
-    image = axes.imshow(speed, aspect="auto", cmap="PuOr_r", vmin=-fastest, vmax=fastest, interpolation="nearest",
-                        extent=(-0.5 / formation["fps"], (frames - 0.5) / formation["fps"], people - 0.5, -0.5))
-    axes.figure.colorbar(image, ax=axes, label="speed of the hip, m/s (negative: back)")
-    moved = [(onset, n) for n, onset in enumerate(formation["onset_s"]) if onset is not None]
-    if moved:
-        axes.plot(*zip(*moved), "o", color="white", markeredgecolor="black")
-    for n, band in enumerate(formation.get("onset_band90", [])):
-        if band is not None:
-            axes.plot(band, [n, n], color="black")
-    axes.set_xlabel("time, s")
-    axes.set_ylabel("person")
-    return axes

@@ -8,23 +8,13 @@ from ._options import text_of
 from ._recordings import checked
 
 
-class Formation(dict):
-    """A formation of people after a push; plot() draws the wave.
-
-    "hip" (frames, people, 3), "states" (frames, people, 8), "speed" (frames, people), in m/s, negative backwards,
-    "onset_s" (None: never), "displacement" (m along the push), "outcome", "fps", "wave_speed" (m/s, from the first person
-    that moves to the foremost; None: undefined), and "onset_band90" and "wave_speed_band90" if requested.
-    """
-
-    def plot(self, **options):
-        """The wave (matplotlib): time horizontally, people vertically, hip speed as colour; returns the axes."""
-        from . import _plots
-        return _plots.wave(self, **options)
-
-
 def simulate_formation(result, shape="line", people=10, *, spacing=0.45, pushed=0, push=None, push_duration=None,
                        push_direction=0.0, mass=None, rod=None, duration=4.0, fps=60.0, set=None, onset_bands=False):
-    """Rolls a fitted model out on a formation of people; see Formation.
+    """Rolls a fitted model out on a formation of people.
+
+    Returns "hip" (frames, people, 3), "states" (frames, people, 8), "speed" (frames, people), in m/s, negative backwards,
+    "onset_s" (None: never), "displacement" (m along the push), "outcome", "fps", "wave_speed" (m/s, from the first person
+    that moves to the foremost; None: undefined), and "onset_band90" and "wave_speed_band90" if requested.
 
     shape: "line", "diamond" or "grid"; spacing: m. push: N s (None: usual in the fit) on person `pushed`, of the kind, at
     the height and (None) within the push_duration (s) of the fit's pushes, push_direction degrees from +x to the left.
@@ -32,9 +22,8 @@ def simulate_formation(result, shape="line", people=10, *, spacing=0.45, pushed=
     (s) of the simulation; fps: frames per second. onset_bands: also compute 90 % bands of the onsets, by drawing
     parameters from their covariance.
     """
-    return Formation(_pushid.simulate_formation(result._model, shape, people, spacing, pushed, push, push_duration,
-                                                push_direction, mass, rod, duration, fps, text_of("set", set or {}),
-                                                onset_bands))
+    return _pushid.simulate_formation(result._model, shape, people, spacing, pushed, push, push_duration, push_direction,
+                                      mass, rod, duration, fps, text_of("set", set or {}), onset_bands)
 
 
 class OnlinePredictor:

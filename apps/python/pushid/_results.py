@@ -198,17 +198,6 @@ class Result:
         return _pushid.predict(self._model, *checked(recording), observed, frames, samples, seed, text_of("set", set or {}),
                                push_scale, list(push_again), forecast)
 
-    def path_between(self, start, end, *, frames=90, fps=60.0, mass=85.0, rod=0.95):
-        """The most probable path of a person between two states under the model's process noise.
-
-        start, end: {"x": 0.4, "theta": 0.05, "xd": 0.3, ...}: x, y (m), theta, phi (rad) and their rates xd, yd,
-        thetad, phid; components not named are 0, and all final rates are free if none is named. Returns "states"
-        (frames, 1, 8), "noise" (frames, 1, 4), the generalized force along the path, and "action", -log of its
-        probability density up to a constant: the most probable of several ends has the lowest action. fps: frames per
-        second; mass: kg; rod: from ankles to hip, m.
-        """
-        return _pushid.path_between(self._model, text_of("start", start), text_of("end", end), frames, fps, mass, rod)
-
     def evaluate(self, recordings, *, observed=0, forecast="both"):
         """Errors of the predictions and of two baselines; see Scores."""
         return Scores(*self._model.evaluate(checked(recordings), observed, forecast))
@@ -222,17 +211,6 @@ class Result:
         UsageError for models with learned terms. mass: kg; rod: m.
         """
         return _pushid.loop(self._model, mass, rod)
-
-    def frequency_response(self, recordings):
-        """How people answer ground that oscillates, frequency by frequency, beside the model.
-
-        {"angle_theta_by_ground_shift": {...}, ...}, empty if nothing in the recordings repeats itself for 10 s. Each has
-        arrays with one value per frequency: "frequency" (Hz), "gain" ("output_unit" over "input_unit"),
-        "log_gain_error" (standard error of the gain's natural logarithm), "phase" and "phase_error" (rad),
-        "coherence", "people" (how many), and, where the model has a closed form, "model_gain" and "model_phase";
-        also "persons", "recordings" and "name".
-        """
-        return _pushid.frequency_response(self._model, checked(recordings))
 
     def report(self, path):
         """Writes the report as one page of HTML (path ends in .html); returns its path."""
@@ -262,11 +240,6 @@ class Result:
         """
         from . import _plots
         return _plots.draw(self, name, axes, panel)
-
-    def plot_motion(self, recording, **options):
-        """Recorded and predicted hips, with bands if there are any; returns the axes."""
-        from . import _plots
-        return _plots.motion(self, recording, **options)
 
     @property
     def details(self):

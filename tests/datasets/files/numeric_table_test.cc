@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/simulators/table_files.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -94,45 +94,6 @@ TEST_F(HandmadeC3dTest, ScalesAreOfEveryChannelOrOfNone) {
       "ANALOG:OFFSET ends after 1 of 3 analog channels"));
 }
 
-TEST_F(HandmadeC3dTest, EventsOfTheHeader) {
-  for (C3dProcessor processor : kProcessors) {
-    const C3dFile read = Read(HeaderEventsC3d(processor));
-    ASSERT_EQ(read.events.size(), 2u) << NameOf(processor);
-    EXPECT_EQ(read.events[0].label, "RHS");
-    EXPECT_EQ(read.events[0].time_s, 1.5);
-    EXPECT_EQ(read.events[1].label, "LTO2");
-    EXPECT_EQ(read.events[1].time_s, 2.25);
-  }
-  // Without the number that says so, they are none.
-  HandmadeC3d none = HeaderEventsC3d();
-  std::string bytes = none.Bytes();
-  bytes[298] = 0;
-  const C3dFile read = Unwrapped(ReadC3d(WriteText("b.c3d", bytes)));
-  EXPECT_TRUE(read.events.empty());
-}
-
-TEST_F(HandmadeC3dTest, EventsOfTheGroupComeBeforeThoseOfTheHeader) {
-  HandmadeC3d file = HeaderEventsC3d();
-  file.Group("EVENT");
-  file.Integers("USED", {1}, {});
-  file.Reals("TIMES", {1.0, 7.0}, {2, 1});
-  const C3dFile read = Read(file);
-  ASSERT_EQ(read.events.size(), 1u);
-  EXPECT_EQ(read.events[0].time_s, 67.0);
-}
-
-TEST_F(HandmadeC3dTest, ManyEventsTakeTimes2) {
-  HandmadeC3d file;
-  file.Group("EVENT");
-  file.Integers("USED", {300}, {});
-  file.Reals("TIMES", std::vector<double>(510, 1.0), {2, 255});
-  file.Reals("TIMES2", std::vector<double>(90, 2.0), {2, 45});
-  const C3dFile read = Read(file);
-  ASSERT_EQ(read.events.size(), 300u);
-  EXPECT_EQ(read.events[254].time_s, 61.0);
-  EXPECT_EQ(read.events[299].time_s, 122.0);
-}
-
 // The upper half of each count is that of a negative integer.
 TEST_F(HandmadeC3dTest, MoreFramesThanTheHeaderCounts) {
   constexpr int kFrames = 65536 + 40000;

@@ -7,6 +7,7 @@
 #include "datasets/formats/point_motion.h"
 #include "datasets/manifest/joint_mapping.h"
 #include "tests/datasets/c3d_samples.h"
+#include "tests/simulators/table_files.h"
 #include "tests/test_support.h"
 
 namespace pushid {
@@ -242,7 +243,7 @@ TEST_F(PointFilesTest, MappingFiles) {
       "\"z\"}";
   const ColumnMapping mapping = Unwrapped(ReadColumnMapping(WriteText("m.json", good)));
   EXPECT_EQ(mapping.columns[0].y, "wy");
-  EXPECT_EQ(mapping.joints.hip->mean_of[1].index, 3);
+  EXPECT_EQ(mapping.joints.Of(kBodyHip)->mean_of[1].index, 3);
   EXPECT_EQ(mapping.frame_rate, 100.0);
   EXPECT_EQ(mapping.length_unit, LengthUnit::kCentimetre);
   const std::vector<std::pair<std::string, std::string>> bad = {

@@ -13,6 +13,7 @@
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
 #include "tests/datasets/recording_folder.h"
+#include "tests/simulators/table_files.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -9,6 +9,7 @@
 #include "datasets/loading/load_recordings.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "datasets/synthetic/synthetic_recordings.h"
+#include "tests/simulators/platform_files.h"
 #include "tests/test_support.h"
 
 namespace pushid {
@@ -16,8 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-SyntheticOptions OnPlatform(GroundKind ground) {
-  SyntheticOptions options;
+PlatformOptions OnPlatform(GroundKind ground) {
+  PlatformOptions options;
   options.model.stance = Stance::kFixed;
   options.model.push_tail = PushTail::kNone;
   options.parameters = {};
@@ -30,8 +31,7 @@ SyntheticOptions OnPlatform(GroundKind ground) {
   options.frames = 150;
   options.lean_sigma_rad = 0.0;
   options.pushes = false;
-  options.ground = ground;
-  options.plates = true;
+  options.kind = ground;
   options.plate_noise_m = options.plate_noise_n = 0.0;
   return options;
 }
@@ -39,10 +39,10 @@ SyntheticOptions OnPlatform(GroundKind ground) {
 class LaboratoryTest : public TempDirTest {
  protected:
   // Writes the recording and what the manifest then says after `change`; loads it.
-  Result<std::vector<Recording>> Load(const SyntheticOptions& options,
+  Result<std::vector<Recording>> Load(const PlatformOptions& options,
                                       const std::function<void(Json*)>& change = nullptr) {
-    made_ = MakeSyntheticRecordings(options).value();
-    EXPECT_FALSE(WriteSyntheticRecordings(folder_.string(), options, made_));
+    made_ = MakeOnPlatforms(options).value();
+    EXPECT_FALSE(WriteOnPlatforms(folder_.string(), options, made_));
     if (change) {
       Json json = Json::parse(ReadText(Path("manifest.json")));
       change(&json["recordings"][0]);
@@ -56,7 +56,7 @@ class LaboratoryTest : public TempDirTest {
 };
 
 TEST_F(LaboratoryTest, WhatWasRolledOutComesBack) {
-  SyntheticOptions options = OnPlatform(GroundKind::kStep);
+  PlatformOptions options = OnPlatform(GroundKind::kStep);
   const auto loaded = Unwrapped(Load(options));
   const PendulumRecording seen = MakePendulumRecording(loaded[0]);
   ASSERT_TRUE(seen.scene.ground.moves());
@@ -74,7 +74,7 @@ TEST_F(LaboratoryTest, WhatWasRolledOutComesBack) {
 
 // One frame's noise would be in every frame of a rollout.
 TEST_F(LaboratoryTest, WhoStandsQuietlyStartsFromTheMean) {
-  SyntheticOptions options = OnPlatform(GroundKind::kStep);
+  PlatformOptions options = OnPlatform(GroundKind::kStep);
   options.joint_noise_m = 0.005;
   const PendulumRecording seen = MakePendulumRecording(Unwrapped(Load(options))[0]);
   const std::vector<GroundPose>& poses = seen.scene.ground.poses;
@@ -109,7 +109,7 @@ TEST_F(LaboratoryTest, CentresOfWhoPressedNothingBeforeCountFromTheirMean) {
 }
 
 TEST_F(LaboratoryTest, RatesAreSummedUpToWhatTheyWere) {
-  const SyntheticOptions options = OnPlatform(GroundKind::kSine);
+  const PlatformOptions options = OnPlatform(GroundKind::kSine);
   for (const std::string quantity : {"velocity", "acceleration"}) {
     const auto loaded = Load(options, [&](Json* entry) {
       std::string text = "time,x\n";
@@ -134,11 +134,10 @@ TEST_F(LaboratoryTest, RatesAreSummedUpToWhatTheyWere) {
 
 // Another rate, another clock.
 TEST_F(LaboratoryTest, FilesHaveTheirOwnClocks) {
-  const SyntheticOptions options = OnPlatform(GroundKind::kSine);
+  const PlatformOptions options = OnPlatform(GroundKind::kSine);
   const auto loaded = Load(options, [&](Json* entry) {
     std::string text = "time,x,theta\n";
-    const auto poses = SyntheticGround(GroundKind::kSine, options.ground_size_m, 400, 1.0 / 250.0,
-                                       Eigen::Vector2d::UnitX());
+    const auto poses = SyntheticGround(GroundKind::kSine, options.size_m, 400, 1.0 / 250.0);
     for (int i = -50; i < 400; ++i) {
       const double x = i < 0 ? 0.0 : poses[i][0];
       text += std::to_string(3.0 + i / 250.0) + "," + std::to_string(x) + ",0\n";
@@ -167,7 +166,7 @@ class WrongLaboratory : public LaboratoryTest,
 
 TEST_P(WrongLaboratory, IsToldOf) {
   const auto& [name, entry_text, file, said] = GetParam();
-  SyntheticOptions options = OnPlatform(GroundKind::kStep);
+  PlatformOptions options = OnPlatform(GroundKind::kStep);
   const auto loaded = Load(options, [&, this](Json* entry) {
     if (!file.empty()) WriteText("wrong.csv", file);
     entry->update(Json::parse(entry_text));
@@ -201,8 +200,8 @@ INSTANTIATE_TEST_SUITE_P(
             "wrong.csv:1: recording 'S01_00_weak': the column 'tehta' is not known, and would "
             "be read as none; did you mean theta?"),
         std::tuple("no_time", kGround, "x,y\n0,1\n1,2\n2,3\n", "no column called time"),
-        std::tuple("neither", R"({"ground": {"start": 1}})", "", "needs either \"csv\""),
-        std::tuple("two_markers", R"({"ground": {"markers": ["a", "b"]}})", "", "three or more"),
+        std::tuple("no_file", R"({"ground": {"start": 1}})", "", "csv is missing"),
+        std::tuple("markers", R"({"ground": {"markers": ["a", "b", "c"]}})", "", "markers is not"),
         std::tuple("quantity", R"({"ground": {"csv": "wrong.csv", "quantity": "jerk"}})", "",
                    "quantity"),
         std::tuple("unknown_key", R"({"ground": {"csv": "wrong.csv", "star": 1}})", "", "star"),
@@ -227,7 +226,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // y up and z forward, as laboratories of gait have it: x is to the left.
 TEST_F(LaboratoryTest, FilesHaveTheirOwnAxes) {
-  const SyntheticOptions options = OnPlatform(GroundKind::kStep);
+  const PlatformOptions options = OnPlatform(GroundKind::kStep);
   const auto loaded = Load(options, [&](Json* entry) {
     std::string ground = "time,x,z\n", plates = "time,fx,fy,fz,px,pz\n";
     for (int t = 0; t < options.frames; ++t) {
@@ -260,7 +259,7 @@ TEST_F(LaboratoryTest, FilesHaveTheirOwnAxes) {
 
 // Far from the feet of someone who stands at the origin, on ground that does not move.
 TEST_F(LaboratoryTest, CentresFarFromTheFeetAreRefused) {
-  SyntheticOptions options = OnPlatform(GroundKind::kNone);
+  PlatformOptions options = OnPlatform(GroundKind::kNone);
   options.pushes = true;
   options.push_kind = PushKind::kExternal;
   options.strengths = {{"weak", 0.3}};
@@ -275,7 +274,7 @@ TEST_F(LaboratoryTest, CentresFarFromTheFeetAreRefused) {
 
 // Two platforms, one foot each, are one.
 TEST_F(LaboratoryTest, PlatformsAddUp) {
-  SyntheticOptions options = OnPlatform(GroundKind::kStep);
+  PlatformOptions options = OnPlatform(GroundKind::kStep);
   const auto loaded = Load(options, [&, this](Json* entry) {
     std::string text = "time,l_fx,l_fy,l_fz,l_px,l_py,r_fx,r_fy,r_fz,r_px,r_py\n";
     for (int t = 0; t < options.frames; ++t) {
@@ -302,7 +301,7 @@ TEST_F(LaboratoryTest, PlatformsAddUp) {
 // One foot on each of two platforms, 0.4 m apart. Where one lacks its centre under load, the frames
 // have no weight and the others are as they were; an unloaded one needs none.
 TEST_F(LaboratoryTest, CentresThatAreMissingUnderLoad) {
-  const SyntheticOptions options = OnPlatform(GroundKind::kStep);
+  const PlatformOptions options = OnPlatform(GroundKind::kStep);
   struct Gap {
     std::string cells;
     int from, to;
@@ -354,7 +353,7 @@ TEST_F(LaboratoryTest, CentresThatAreMissingUnderLoad) {
 
 // The force on the platform, as some laboratories store it.
 TEST_F(LaboratoryTest, ForcesOfTheOtherSign) {
-  const SyntheticOptions options = OnPlatform(GroundKind::kStep);
+  const PlatformOptions options = OnPlatform(GroundKind::kStep);
   Load(options, [&, this](Json* entry) {
     std::string text = "time,fx,fy,fz,px,py\n";
     for (int t = 0; t < options.frames; ++t) {

@@ -36,8 +36,8 @@ TEST_F(LoadPointsTest, TheFilesClockAtFrameZero) {
 }
 
 TEST_F(LoadPointsTest, ManifestRoundTrip) {
-  entry().joints.hip = JointReference{"", -1, {{"LASI"}, {"", 1}}};
-  entry().subjects[0].joints.left_ankle = JointReference{"LANK"};
+  entry().joints.Set(kBodyHip, JointReference{"", -1, {{"LASI"}, {"", 1}}});
+  entry().subjects[0].joints.Set(kLeftAnkle, JointReference{"LANK"});
   entry().mapping = "map.json";
   entry().first_frame = 2;
   entry().end_frame = 9;
@@ -46,10 +46,10 @@ TEST_F(LoadPointsTest, ManifestRoundTrip) {
   const ManifestRecording& again = read.recordings[0];
   EXPECT_EQ(again.motion_format, MotionFormat::kTrc);
   EXPECT_EQ(again.motion, std::vector<std::string>{"a.trc"});
-  ASSERT_EQ(again.joints.hip->mean_of.size(), 2u);
-  EXPECT_EQ(again.joints.hip->mean_of[0].name, "LASI");
-  EXPECT_EQ(again.joints.hip->mean_of[1].index, 1);
-  EXPECT_EQ(again.subjects[0].joints.left_ankle->name, "LANK");
+  ASSERT_EQ(again.joints.Of(kBodyHip)->mean_of.size(), 2u);
+  EXPECT_EQ(again.joints.Of(kBodyHip)->mean_of[0].name, "LASI");
+  EXPECT_EQ(again.joints.Of(kBodyHip)->mean_of[1].index, 1);
+  EXPECT_EQ(again.subjects[0].joints.Of(kLeftAnkle)->name, "LANK");
   EXPECT_EQ(again.mapping, "map.json");
   EXPECT_EQ(again.first_frame, 2);
   EXPECT_EQ(again.end_frame, 9);
@@ -72,13 +72,13 @@ TEST_F(LoadPointsTest, BadManifestsOfPoints) {
 }
 
 TEST_F(LoadPointsTest, MarkersByName) {
-  entry().joints.hip = JointReference{"", -1, {{"S1:LASI"}, {"RASI"}}};
+  entry().joints.Set(kBodyHip, JointReference{"", -1, {{"S1:LASI"}, {"RASI"}}});
   const auto loaded = Unwrapped(Load());
   EXPECT_LT((loaded[0].people[0].hip[0] - Eigen::Vector3d(0.08, 0.0, 0.95)).norm(), 1e-9);
-  entry().joints.hip = JointReference{"", -1, {{"LASI"}, {"SACR"}}};
+  entry().joints.Set(kBodyHip, JointReference{"", -1, {{"LASI"}, {"SACR"}}});
   EXPECT_TRUE(
       Contains(Message(), "joints: hip: there is no point 'SACR'; it has S1:LASI, S1:RASI"));
-  entry().joints.hip = JointReference{"LANK"};
+  entry().joints.Set(kBodyHip, JointReference{"LANK"});
   EXPECT_TRUE(Contains(Message(), "three different points"));
 }
 
@@ -94,7 +94,7 @@ TEST_F(LoadPointsTest, SeveralPeopleInOneFile) {
   entry().subjects.push_back({"s2", 80.0});
   entry().motion = {"a.trc", "a.trc"};
   EXPECT_TRUE(Contains(Message(), "hip could be 'S1:LASI' or 'S2:LASI'; name it in full"));
-  entry().joints.hip = JointReference{"LASI"};
+  entry().joints.Set(kBodyHip, JointReference{"LASI"});
   EXPECT_TRUE(Contains(Message(), "joints: hip: hip could be 'S1:LASI' or 'S2:LASI'"));
   for (int n = 0; n < 2; ++n) {
     const std::string prefix = "S" + std::to_string(n + 1) + ":";

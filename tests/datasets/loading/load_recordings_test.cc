@@ -189,15 +189,15 @@ TEST_F(LoadRecordingsTest, JointsByNameAndIndex) {
   EXPECT_TRUE(Contains(message, "no joint could be recognised as left_ankle"));
   EXPECT_TRUE(Contains(message, "\"joints\""));
   EXPECT_TRUE(Contains(message, "the skeleton has Pelvis, A, B"));
-  entry().joints.left_ankle = JointReference{"A", -1};
-  entry().joints.right_ankle = JointReference{"", 2};
+  entry().joints.Set(kLeftAnkle, JointReference{"A", -1});
+  entry().joints.Set(kRightAnkle, JointReference{"", 2});
   EXPECT_TRUE(Load().ok());
-  entry().joints.right_ankle = JointReference{"C", -1};
+  entry().joints.Set(kRightAnkle, JointReference{"C", -1});
   EXPECT_TRUE(
       Contains(Message(), "joints: right_ankle: there is no joint 'C'; it has Pelvis, A, B"));
-  entry().joints.right_ankle = JointReference{"", 3};
+  entry().joints.Set(kRightAnkle, JointReference{"", 3});
   EXPECT_TRUE(Contains(Message(), "right_ankle is joint 3, but the skeleton has joints 0 to 2"));
-  entry().joints.right_ankle = JointReference{"A", -1};
+  entry().joints.Set(kRightAnkle, JointReference{"A", -1});
   EXPECT_TRUE(Contains(Message(), "three different joints"));
 }
 

@@ -1,7 +1,7 @@
 // Clips of exponential maps: read, refused with line and column, cut into the protocol's windows.
 #include "datasets/loading/generator_data.h"
-#include "datasets/synthetic/synthetic_clips.h"
 #include "tests/mocap_support.h"
+#include "tests/simulators/synthetic_clips.h"
 #include "tests/test_support.h"
 
 namespace pushid {

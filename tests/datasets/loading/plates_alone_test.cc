@@ -13,6 +13,7 @@
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
+#include "tests/simulators/platform_files.h"
 #include "tests/test_support.h"
 
 namespace pushid {
@@ -196,7 +197,7 @@ INSTANTIATE_TEST_SUITE_P(OnPersonOrPlatform, Moments, ::testing::Values(1.0, -1.
 class PlatesOfPeople : public TempDirTest {
  protected:
   Result<std::vector<Recording>> Load(const std::function<void(Json*)>& change = nullptr) {
-    SyntheticOptions options;
+    PlatformOptions options;
     options.model.stance = Stance::kFixed;
     options.model.push_tail = PushTail::kNone;
     options.parameters = {};
@@ -208,11 +209,10 @@ class PlatesOfPeople : public TempDirTest {
     options.frames = 120;
     options.lean_sigma_rad = 0.0;
     options.pushes = false;
-    options.ground = GroundKind::kStep;
-    options.plates = true;
+    options.kind = GroundKind::kStep;
     options.plate_noise_m = options.plate_noise_n = 0.0;
-    made_ = MakeSyntheticRecordings(options).value();
-    EXPECT_FALSE(WriteSyntheticRecordings(folder_.string(), options, made_));
+    made_ = MakeOnPlatforms(options).value();
+    EXPECT_FALSE(WriteOnPlatforms(folder_.string(), options, made_));
     Json json = Json::parse(ReadText(Path("manifest.json")));
     if (change) change(&json["recordings"][0]);
     WriteText("manifest.json", json.dump());

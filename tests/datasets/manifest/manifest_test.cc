@@ -89,7 +89,7 @@ TEST_F(ManifestTest, ReadsEverything) {
   EXPECT_EQ(a.labels.magnitude(), "weak");
   EXPECT_EQ(a.up, "z");
   EXPECT_EQ(a.initial_velocity, InitialVelocity::kZero);
-  EXPECT_FALSE(a.length_unit || a.frames || a.joints.hip);
+  EXPECT_FALSE(a.length_unit || a.frames || a.joints.Of(kBodyHip));
   EXPECT_EQ(a.line, 5);
 
   const ManifestRecording& b = read.recordings[1];
@@ -102,9 +102,9 @@ TEST_F(ManifestTest, ReadsEverything) {
   EXPECT_EQ(b.labels.Keys(),
             (std::vector<std::string>{"condition", "magnitude", "setting", "split", "why"}));
   EXPECT_TRUE(MisspeltKeys(b).empty()) << "split is a label";
-  EXPECT_EQ(b.joints.hip->name, "Hips");
-  EXPECT_EQ(b.joints.left_ankle->index, 3);
-  EXPECT_FALSE(b.joints.right_ankle);
+  EXPECT_EQ(b.joints.Of(kBodyHip)->name, "Hips");
+  EXPECT_EQ(b.joints.Of(kLeftAnkle)->index, 3);
+  EXPECT_FALSE(b.joints.Of(kRightAnkle));
   EXPECT_EQ(b.up, "+y");
   EXPECT_EQ(b.length_unit, LengthUnit::kMetre);
   ASSERT_EQ(b.pushes.size(), 1u);
@@ -134,7 +134,7 @@ TEST_F(ManifestTest, ChangesAreWritten) {
   manifest.length_unit = LengthUnit::kMillimetre;
   manifest.recordings[0].push_csv = "";
   manifest.recordings[0].initial_velocity = InitialVelocity::kEstimated;
-  manifest.recordings[0].joints.hip = JointReference{"Root", -1};
+  manifest.recordings[0].joints.Set(kBodyHip, JointReference{"Root", -1});
   manifest.recordings[0].joints.Set(kLeftKnee, JointReference{"LKneeJC", -1});
   manifest.recordings[0].length_scale = 0.0564;
   manifest.recordings[1].joints = {};
@@ -153,12 +153,12 @@ TEST_F(ManifestTest, ChangesAreWritten) {
   EXPECT_FALSE(json["recordings"][1].contains("condition_code"));
   const Manifest again = Unwrapped(ReadManifest(Path("manifest.json")));
   EXPECT_EQ(again.recordings[0].initial_velocity, InitialVelocity::kEstimated);
-  EXPECT_EQ(again.recordings[0].joints.hip->name, "Root");
+  EXPECT_EQ(again.recordings[0].joints.Of(kBodyHip)->name, "Root");
   EXPECT_EQ(json["recordings"][0]["joints"]["left_knee"], "LKneeJC");
   EXPECT_EQ(again.recordings[0].joints.Of(kLeftKnee)->name, "LKneeJC");
   EXPECT_FALSE(again.recordings[0].joints.Of(kRightKnee));
   EXPECT_EQ(again.recordings[0].length_scale, 0.0564);
-  EXPECT_FALSE(again.recordings[1].joints.hip);
+  EXPECT_FALSE(again.recordings[1].joints.Of(kBodyHip));
   EXPECT_EQ(again.recordings[1].up, "z");
   EXPECT_EQ(again.recordings[1].pushes[0].start_frame, 13);
   EXPECT_FALSE(again.recordings[1].frames);

@@ -1,6 +1,6 @@
 // The laboratory's people: Newton's law holds between what markers, platforms and load cell see;
 // the integrator has converged; its files are read without a warning; no model is behind it.
-#include "datasets/synthetic/laboratory.h"
+#include "tests/simulators/laboratory.h"
 
 #include <gtest/gtest.h>
 
@@ -119,7 +119,7 @@ TEST_F(LaboratoryFiles, AreReadWithoutAWarningAndSayWhatHappened) {
 // Including one of models/ would make the example less independent than it says.
 TEST(Laboratory, NoCodeOfModels) {
   for (const char* file : {"laboratory.h", "laboratory.cc"}) {
-    std::ifstream stream(std::string(PUSHID_SOURCE_DIR) + "/datasets/synthetic/" + file);
+    std::ifstream stream(std::string(PUSHID_SOURCE_DIR) + "/tests/simulators/" + file);
     std::stringstream text;
     text << stream.rdbuf();
     ASSERT_GT(text.str().size(), 1000u) << file;

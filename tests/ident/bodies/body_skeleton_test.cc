@@ -175,7 +175,7 @@ TEST_F(BodySkeletonTest, TheRestIsTheFirstFrameThatIsUsed) {
 
 // A hip that is the mean of several joints: the root stands in for it.
 TEST_F(BodySkeletonTest, AHipBetweenTwoJoints) {
-  entry().joints.hip = JointReference{"", -1, {{"rig:thigh.L"}, {"rig:thigh.R"}}};
+  entry().joints.Set(kBodyHip, JointReference{"", -1, {{"rig:thigh.L"}, {"rig:thigh.R"}}});
   const BodyRecording recording = Recorded(PlainSkeleton());
   const BodySkeleton& skeleton = recording.skeletons[0];
   const Eigen::Vector3d move(0.3, -0.1, 0.02);

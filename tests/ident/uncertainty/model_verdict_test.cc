@@ -211,7 +211,6 @@ TEST(ModelVerdict, TheIntegratorIsAStatedError) {
 // Half of a step has the impulse of the whole, and its rates are the means of both halves.
 TEST(ModelVerdict, HalfStepsEndWhereWholeOnesDo) {
   SyntheticOptions study = TinyStudy();
-  study.ground = GroundKind::kNone;
   study.push_kind = PushKind::kExternal;
   const auto recordings = MakePendulums(study);
   FitOptions options = MakePreset("tail").value();

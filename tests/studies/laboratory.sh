@@ -1,10 +1,16 @@
-# shellcheck shell=bash
-# The second example of apps/quickstart.sh, which sources this file: recordings as a laboratory has them, of people who are
-# not the fitted model (datasets/synthetic/laboratory.h): two links, active torques that come late, feet that step.
-out=${out:-quickstart-output/laboratory}
+#!/usr/bin/env bash
+# Recordings as a laboratory has them, of people who are not the fitted model (tests/simulators/laboratory.h): two links,
+# active torques that come late, feet that step. What is found of them, what is not, and which diagnostics say so.
+#   bash tests/studies/laboratory.sh [FOLDER]   default quickstart-output/laboratory; programs from PUSHID_BIN
+set -euo pipefail
+out=${1:-quickstart-output/laboratory}
+bin=${PUSHID_BIN:-$(dirname "${BASH_SOURCE[0]}")/../../build/release/bin}
+export OPENBLAS_NUM_THREADS=1  # results repeat bit by bit
+
+say() { printf '\n== %s\n' "$*"; }
 
 say "Making a laboratory's recordings of four people: markers, two force platforms, a load cell that pulls at the hips"
-"$bin/pushid-simulate" --out="$out" --laboratory=4 --seed=1 --overwrite
+"$bin/simulate-others" --out="$out" --laboratory=4 --seed=1
 manifest=$out/manifest.json
 ids=$(cd "$out/force" && printf '%s,' *.csv | sed 's/\.csv,/,/g; s/,$//')
 

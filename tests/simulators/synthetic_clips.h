@@ -1,4 +1,4 @@
-// datasets: synthetic clips of motion capture: a walking stick figure in the exponential-map text
+// Synthetic clips of motion capture: a walking stick figure in the exponential-map text
 // of the literature (loading/generator_data.h), for trying and testing generators without outside
 // data.
 //

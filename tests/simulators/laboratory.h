@@ -1,4 +1,4 @@
-// datasets: recordings as a laboratory has them, of people who are not the model that is fitted.
+// Recordings as a laboratory has them, of people who are not the model that is fitted.
 //
 //   LaboratoryOptions options;
 //   MaybeError failed = WriteLaboratoryStudy("lab", options);  // lab/manifest.json, lab/truth.json

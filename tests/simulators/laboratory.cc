@@ -1,5 +1,5 @@
-// datasets: two-link people of a laboratory, simulated and written.
-#include "datasets/synthetic/laboratory.h"
+// Two-link people of a laboratory, simulated and written.
+#include "tests/simulators/laboratory.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,7 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
-#include "datasets/files/numeric_table.h"
-#include "datasets/formats/point_motion.h"
+#include "tests/simulators/table_files.h"
 
 namespace pushid {
 namespace {

@@ -1,5 +1,5 @@
-// datasets: a stick figure that walks.
-#include "datasets/synthetic/synthetic_clips.h"
+// A stick figure that walks.
+#include "tests/simulators/synthetic_clips.h"
 
 #include <Eigen/Geometry>
 #include <array>
