@@ -1,4 +1,4 @@
-// apps: pushid-animate: recorded and predicted people as a web page and as a strip of poses.
+// apps: pushid-animate: recorded and predicted people as a web page.
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
 #include "apps/flags/recording_flags.h"
@@ -6,26 +6,21 @@
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/prediction/prediction.h"
+#include "ident/prediction/propagation.h"
 
 DEFINE_string(id, "", "the recording to show");
 DEFINE_string(out, "", "the page to write (HTML), for any browser");
-DEFINE_string(svg_out, "", "a strip of poses (SVG)");
 DEFINE_string(explain, "",
-              "describe the forces on this person in words and plot them beside the motion: a "
-              "person's id, or auto (the bystander with the most events)");
+              "describe the forces on this person in words, beside the motion: a person's id, or "
+              "auto (the bystander with the most events)");
 
 namespace {
 
 using namespace pushid;
 
-void Write(const std::string& file, const std::string& content) {
-  OrFail(WriteFileAtomically(file, content));
-  std::printf("%s\n", file.c_str());
-}
-
-// Explains the forces of the model as it was fitted.
-void Explain(const std::string& who, const PendulumRecording& recording,
-             const Prediction& prediction, Animation* animation) {
+// The forces of the model as it was fitted, in words.
+std::string Explained(const std::string& who, const PendulumRecording& recording,
+                      const Prediction& prediction) {
   ForceStory story;
   if (who == "auto") {
     story = RichestStory(recording, prediction);
@@ -38,16 +33,13 @@ void Explain(const std::string& who, const PendulumRecording& recording,
     }
     story = StoryOf(recording, prediction, static_cast<int>(found - recording.subject_ids.begin()));
   }
-  std::printf("%s\n", StoryText(recording, story).c_str());
-  animation->story = AnimatedStory{recording.subject_ids[story.person], std::move(story)};
+  return StoryText(recording, story);
 }
 
 int Run() {
   Require("id", FLAGS_id, "name a recording of the manifest");
-  if (FLAGS_out.empty() && FLAGS_svg_out.empty()) {
-    throw Error{"--out and --svg_out are missing: name a page (HTML) or a picture (SVG)"};
-  }
-  OrFail(CheckOutputFiles({FLAGS_out, FLAGS_svg_out}));
+  Require("out", FLAGS_out, "name a page (HTML)");
+  OrFail(CheckOutputFiles({FLAGS_out}));
   const RestorationFlags flags = RestorationFlagsFromCommandLine("rigid");
   const std::vector<WhatIf> what_ifs = LoadWhatIfs();
   const IdentifiedModel& model = what_ifs.front().model;
@@ -75,8 +67,9 @@ int Run() {
       const std::string with = one.what.empty() ? "" : "with " + one.what + " ";
       return Fail(with + OutsideText(prediction.status), kFitFailed);
     }
-    if (!FLAGS_explain.empty() && !animation.story) {
-      Explain(FLAGS_explain, pendulum, prediction, &animation);
+    if (!FLAGS_explain.empty() && animation.told.empty()) {
+      animation.told = Explained(FLAGS_explain, pendulum, prediction);
+      std::printf("%s\n", animation.told.c_str());
     }
     std::vector<BodyMotion> bodies;
     if (recording.ok()) {
@@ -87,9 +80,8 @@ int Run() {
     AddPrediction(InLaboratory(pendulum), InLaboratory(pendulum, prediction), bodies, &animation,
                   one.what);
   }
-  if (!FLAGS_out.empty()) Write(FLAGS_out, AnimationHtml({animation}));
-  constexpr int kPoses = 7;
-  if (!FLAGS_svg_out.empty()) Write(FLAGS_svg_out, PoseStrip(animation, kPoses).ToString());
+  OrFail(WriteFileAtomically(FLAGS_out, AnimationHtml({animation})));
+  std::printf("%s\n", FLAGS_out.c_str());
   return kDone;
 }
 

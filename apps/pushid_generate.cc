@@ -72,7 +72,6 @@ DEFINE_string(json_out, "", "write the errors here (JSON)");
 DEFINE_string(poses_out, "",
               "write observed, recorded and forecast poses here (.csv), or observed "
               "and forecast ones (.bvh)");
-DEFINE_string(svg_out, "", "a strip of poses (SVG)");
 DEFINE_string(html_out, "", "a page with the forecast over the recorded motion (HTML)");
 DEFINE_int32(steps, kOptions.changes.diffusion.steps, "diffusion: number of sampling steps");
 DEFINE_double(blend, kOptions.changes.diffusion.blend,
@@ -85,9 +84,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-bool Shows() {
-  return !FLAGS_poses_out.empty() || !FLAGS_svg_out.empty() || !FLAGS_html_out.empty();
-}
+bool Shows() { return !FLAGS_poses_out.empty() || !FLAGS_html_out.empty(); }
 
 void ReadChanges(GeneratorChanges* changes) {
   DiffusionGeneratorOptions& diffusion = changes->diffusion;
@@ -159,8 +156,7 @@ GenerateOptions OptionsFromCommandLine() {
   ReadChanges(&options.changes);
   SetPublished(&options);
   options.changes.seed = FLAGS_seed;
-  OrFail(CheckOutputFiles(
-      {FLAGS_json_out, FLAGS_poses_out, FLAGS_svg_out, FLAGS_html_out, FLAGS_csv_out}));
+  OrFail(CheckOutputFiles({FLAGS_json_out, FLAGS_poses_out, FLAGS_html_out, FLAGS_csv_out}));
   return options;
 }
 
@@ -248,21 +244,19 @@ ForecastScene SceneOfWindow(const MotionGenerator& generator,
   return scene;
 }
 
-// Prints the names of files, and those of --svg_out and --html_out, which it writes.
-void Show(const std::vector<std::string>& files, const Animation& strip, const Animation& page) {
+// Writes --html_out, and prints its name after those of the files.
+void Show(std::vector<std::string> files, const Animation& page) {
+  if (!FLAGS_html_out.empty()) {
+    OrFail(WriteFileAtomically(FLAGS_html_out, AnimationHtml({page})));
+    files.push_back(FLAGS_html_out);
+  }
   for (const std::string& file : files) std::printf("%s\n", file.c_str());
-  const auto write = [](const std::string& file, const std::string& content) {
-    OrFail(WriteFileAtomically(file, content));
-    std::printf("%s\n", file.c_str());
-  };
-  if (!FLAGS_svg_out.empty()) write(FLAGS_svg_out, PoseStrip(strip, kPosesOfStrip).ToString());
-  if (!FLAGS_html_out.empty()) write(FLAGS_html_out, AnimationHtml({page}));
 }
 
 void ShowWindow(const ForecastScene& scene) {
   std::vector<std::string> files;
   if (!FLAGS_poses_out.empty()) files = OrFail(WritePoses(FLAGS_poses_out, scene));
-  Show(files, ToAnimation(scene, scene.num_observed() - 1), ToAnimation(scene, 0));
+  Show(files, ToAnimation(scene));
 }
 
 int FromClips(const TrainedNetworks& trained, const GenerateOptions& options) {
@@ -354,7 +348,7 @@ void ShowGroup(const GeneratorSettings& settings, const TrainedNetworks& trained
     OrFail(WriteJointsCsv(poses, scene));
     files = {poses};
   }
-  Show(files, animation, animation);
+  Show(files, animation);
 }
 
 // Warns once of all recordings whose pushes are of kinds that the generator never saw.

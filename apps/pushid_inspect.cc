@@ -6,7 +6,7 @@
 #include "datasets/inspection/inspection.h"
 #include "datasets/manifest/joint_mapping.h"
 #include "ident/figures/chart.h"
-#include "ident/figures/screen.h"
+#include "ident/figures/text_table.h"
 #include "ident/formations/formation_run.h"
 
 DEFINE_string(mapping, "", "mapping file: which columns or joints are hip and ankles, time, rate");

@@ -6,7 +6,7 @@
 #include "apps/flags/restoration_flags.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_recording.h"
-#include "ident/figures/screen.h"
+#include "ident/figures/text_table.h"
 #include "ident/formations/formation_run.h"
 #include "ident/model/model_rollout.h"
 #include "ident/parameters/presets.h"

@@ -212,8 +212,7 @@ using Json = nlohmann::ordered_json;
 // data: the clips or recordings, by name and hash.
 int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json& data) {
   SetForData(samples, &flags.options);
-  flags.options.configuration = Json{Version(), EffectiveFlags()}.dump();
-  flags.options.checkpoint = MakeOut();
+  MakeOut();
   TrainingLine line;
   TrainedGenerator trained =
       OrFail(TrainGenerator(samples, flags.options, [&](const TrainingPoint& point, double done) {
@@ -225,10 +224,9 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
   trained.networks.settings.training = training;
   const std::string title =
       NameOf(flags.options.kind) + ", " + std::to_string(data.size()) + " motions";
-  WriteCurve(trained, title);
   OrFail(WriteGenerator(FLAGS_out, trained.networks));
-  std::printf("%s: %d seeds, %s; %s\n", title.c_str(), flags.options.seeds,
-              TimeText(line, trained).c_str(), InOut("generator.json").c_str());
+  std::printf("%s: %d seeds, %s s; %s\n", title.c_str(), flags.options.seeds,
+              Rounded(line.Seconds(), 3).c_str(), InOut("generator.json").c_str());
   return kDone;
 }
 
@@ -272,8 +270,7 @@ int Run() {
 int main(int argc, char** argv) {
   pushid::RestartWithBlasOfProcessor(argv);
   return pushid::RunApp(argc, argv,
-                        "pushid-train-generator trains networks that continue observed motion; run "
-                        "again, it goes on.\n"
+                        "pushid-train-generator trains networks that continue observed motion.\n"
                         "  pushid-train-generator --folder=cmu_mocap --out=generator",
                         Run);
 }

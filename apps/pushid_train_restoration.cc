@@ -101,8 +101,8 @@ RestorationRunOptions OptionsFromCommandLine() {
   return options;
 }
 
-int Train(const std::vector<BodyRecording>& recordings, RestorationRunOptions options) {
-  options.training.checkpoint = MakeOut();
+int Train(const std::vector<BodyRecording>& recordings, const RestorationRunOptions& options) {
+  MakeOut();
   const std::vector<int> all = Others({}, static_cast<int>(recordings.size()));
   TrainingLine line;
   const TrainedRestoration trained = OrFail(TrainFromRecordings(
@@ -130,12 +130,11 @@ int Train(const std::vector<BodyRecording>& recordings, RestorationRunOptions op
   const std::string title = NameOf(options.training.kind) + " restoration, " +
                             std::to_string(recordings.size()) + " recordings (" + FLAGS_setting +
                             ")";
-  WriteCurve(trained, title);
   OrFail(WriteTensorFolder(kRestorationFolder, FLAGS_out, content));
-  std::printf("%s: %zu points of the training curve, final held-out loss %s, %s; %s\n",
+  std::printf("%s: %zu points of the training curve, final held-out loss %s, %s s; %s\n",
               title.c_str(), trained.curve.size(),
               Rounded(trained.curve.back().validation_loss, 3).c_str(),
-              TimeText(line, trained).c_str(), InOut("restoration.json").c_str());
+              Rounded(line.Seconds(), 3).c_str(), InOut("restoration.json").c_str());
   return kDone;
 }
 
@@ -170,8 +169,7 @@ int Run() {
 int main(int argc, char** argv) {
   pushid::RestartWithBlasOfProcessor(argv);
   return pushid::RunApp(argc, argv,
-                        "pushid-train-restoration trains networks that make bodies of pendulums; "
-                        "run again, it goes on.\n"
+                        "pushid-train-restoration trains networks that make bodies of pendulums.\n"
                         "  pushid-train-restoration --recordings=recordings/manifest.json "
                         "--model=model.json --out=restoration",
                         Run);

@@ -71,7 +71,7 @@ say "Writing the report as a page, and the same prediction as an animation"
 "$bin/pushid-report" --model="$out/model.json" --recordings="$out/recordings/manifest.json" \
   --html_out="$out/report.html" 2>/dev/null
 "$bin/pushid-animate" --model="$out/model.json" --recordings="$out/held-out/manifest.json" \
-  --id=S01_00_weak --out="$out/motion.html" --svg_out="$out/poses.svg" >/dev/null
+  --id=S01_00_weak --out="$out/motion.html" >/dev/null
 echo "  $(realpath "$out")/report.html"
 echo "  $(realpath "$out")/motion.html"
 
@@ -84,7 +84,7 @@ echo "  report.html      the report as a page with pictures; it needs no network
 echo "  studies.txt      how many intervals covered in 20 other studies"
 echo "  scores.json      prediction errors on the held-out pushes"
 echo "  trajectory.csv   a predicted push: states, hip and forces over time"
-echo "  motion.html      animation of the recorded and the predicted person; poses.svg is a strip of their poses"
+echo "  motion.html      animation of the recorded and the predicted person"
 printf '\nYour own recordings (README.md, Your own recordings; cmake --build --preset programs builds the other programs):\n'
 echo "  $(realpath "$bin")/pushid-fit --recordings=YOUR/manifest.json --setting=single --model_out=model.json"
 

@@ -8,7 +8,7 @@
 #include "ident/training/restoration_training.h"
 #include "ident/validation/scores_report.h"
 
-DEFINE_string(out, "", "folder to write: the network (JSON), weights.npy, curve.svg");
+DEFINE_string(out, "", "folder to write: the network (JSON) and weights.npy");
 DEFINE_int32(crossvalidate, 0,
              "number of folds: instead of writing a network, train (and refit the pendulum) in "
              "every fold and score the held-out recordings; 0: off");
@@ -63,13 +63,10 @@ inline std::string InOut(const char* name) {
   return (std::filesystem::path(FLAGS_out) / name).string();
 }
 
-// Makes the folder; returns the file of the checkpoints in it.
-inline std::string MakeOut() {
+// Makes the folder, in which the weights can be written.
+inline void MakeOut() {
   OrFail(MakeFolder(FLAGS_out));
-  const std::string checkpoint = InOut("checkpoint.bin");
-  OrFail(CheckWritable(checkpoint));
-  SayWhenTrainingInterrupted(FLAGS_out);
-  return checkpoint;
+  OrFail(CheckWritable(InOut("weights.npy")));
 }
 
 // The training as a network's file describes it; data: under this key.
@@ -86,15 +83,6 @@ inline nlohmann::ordered_json JsonOfData(const std::vector<BodyRecording>& recor
         {{"id", recording.pendulum.id}, {"content_hash", recording.pendulum.content_hash}});
   }
   return data;
-}
-
-inline void WriteCurve(const TrainingCourse& course, const std::string& title) {
-  OrFail(WriteFileAtomically(InOut("curve.svg"), TrainingCurveSvg(course.curve, title)));
-}
-
-// "12 s (resumed from a checkpoint)"
-inline std::string TimeText(const TrainingLine& line, const TrainingCourse& course) {
-  return Rounded(line.Seconds(), 3) + " s" + (course.resumed ? " (resumed from a checkpoint)" : "");
 }
 
 }  // namespace pushid

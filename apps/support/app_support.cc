@@ -134,11 +134,6 @@ void SayWhenInterrupted(const std::string& what) {
   sigaction(SIGINT, &ending, nullptr);
 }
 
-void SayWhenTrainingInterrupted(const std::string& folder) {
-  SayWhenInterrupted("the last checkpoint is in " + folder +
-                     ", and the same command continues from there");
-}
-
 void TrainingLine::Show(const std::string& step, double done) {
   const std::string name = step.substr(0, step.rfind(' '));
   if (name != step_) step_ = name, start_ = Now(), done_at_start_ = done;

@@ -62,9 +62,6 @@ inline constexpr int kInterrupted = 130;  // as shells count SIGINT
 // how to start again; a second call replaces it.
 void SayWhenInterrupted(const std::string& what);
 
-// Says so of a training into this folder, whose checkpoint is kept.
-void SayWhenTrainingInterrupted(const std::string& folder);
-
 // Progress of a training: "window, epoch 12: 43 %, 12 s left", where the time left follows from the
 // share done so far. Steps differ in what stands before their last word.
 class TrainingLine {

@@ -1,4 +1,3 @@
-// ident: moving people as a page and as a strip of poses.
 #include "ident/bodies/animation.h"
 
 #include <algorithm>
@@ -9,16 +8,48 @@
 #include <utility>
 
 #include "datasets/files/number_text.h"
-#include "ident/figures/chart.h"
-#include "ident/figures/moving_page.h"
+#include "ident/figures/svg.h"
 
 namespace pushid {
 namespace {
 
 constexpr double kBrightest = 0.85;  // of the scale of colours, that is seen on paper
 
-constexpr char kScript[] =
-    R"html(let frame=0,turn=-0.6,tilt=0.25,zoom=1,names,pushed,bodies,centre,size,origin,span;
+constexpr char kHead[] = R"html(<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<title>)html";
+
+constexpr char kStyle[] =
+    R"html(</title>
+<style>
+:root{--paper:#fff;--ink:#222;--push:#d55e00;--grid:#ddd;--recorded:#8a8a8a}
+@media(prefers-color-scheme:dark){:root{--paper:#15181c;--ink:#e8e8e8;--push:#d55e00;--grid:#3a3f46;--recorded:#a0a0a0}}
+body{margin:0;background:var(--paper);color:var(--ink);font:14px system-ui,sans-serif;display:flex;flex-direction:column;min-height:100vh;height:100vh}
+header,footer{padding:8px 14px;display:flex;gap:14px;align-items:center;flex-wrap:wrap}
+h1{font-size:15px;margin:0 auto 0 0}canvas{flex:1;min-height:0;width:100%;touch-action:none;cursor:grab}
+input[type=range]{flex:1;min-width:160px}button{font:inherit;padding:4px 12px;min-width:70px}
+.chip{display:inline-block;width:1.1em;height:.6em;margin:0 .2em}
+@media print{footer{display:none}body{display:block;height:auto;min-height:0}canvas{height:auto}}
+output{font-variant-numeric:tabular-nums;min-width:11em}label{white-space:nowrap}
+</style></head><body>
+<header><h1 id="title"></h1>
+)html";
+
+constexpr char kCanvas[] =
+    R"html(</header>
+<canvas id="view" aria-label="People in motion; drag to turn, wheel (within a page: with Ctrl) to zoom"></canvas>
+<footer><button id="play">Play</button>
+<input type="range" id="time" min="0" value="0" step="1" aria-label="time">
+<output id="clock"></output>
+<label>speed <select id="speed"><option value="0.25">1/4</option><option value="0.5">1/2</option>
+<option value="1" selected>1</option></select></label></footer>
+)html";
+
+constexpr char kScript[] = R"html(;
+let data=all[0];
+const $=id=>document.getElementById(id),view=$('view'),pen=view.getContext('2d'),framed=parent!==window;
+function style(name){return getComputedStyle(document.documentElement).getPropertyValue(name);}
+let frame=0,turn=-0.6,tilt=0.25,zoom=1,names,pushed,bodies,centre,size,origin,span;
 const on=id=>!$(id)||$(id).checked,at=(f,j)=>[f[3*j],f[3*j+1],f[3*j+2]];
 // Samples lie data.every frames apart; positions between them are interpolated.
 function now(list){const k=Math.min(frame/data.every,list.length-1),i=Math.floor(k),a=list[i];
@@ -78,18 +109,6 @@ function inset(){if(names.length<2||!on('above'))return;const d=devicePixelRatio
  words('from above',x0+42*d,y0+16*d,style('--ink'));
  for(const p of data.people){if(!shown(p))continue;const q=place(hip(p));pen.fillStyle=colourOf(p);pen.beginPath();pen.arc(q[0],q[1],4*d,0,7);pen.fill();
   if(pushed.has(p.name))ring(q,7*d,style('--push'));}}
-// The forces on one person along the push, and where in its story we are.
-const looks=['#d55e00','#9333ea','#009e73'];
-function storyPanel(){if(!data.story)return;const d=devicePixelRatio||1,w=Math.min(330*d,view.width*0.5),h=120*d,x0=8*d,y0=view.height-h-8*d,F=data.story.forces;
- pen.globalAlpha=0.85;pen.fillStyle=style('--paper');pen.fillRect(x0,y0,w,h);pen.globalAlpha=1;pen.setLineDash([]);pen.lineWidth=d;pen.strokeStyle=style('--grid');pen.strokeRect(x0,y0,w,h);
- const most=Math.max(20,...F.flat().map(Math.abs)),X=t=>x0+w*t/Math.max(1,F.length-1),Y=f=>y0+h/2-f/most*(h/2-20*d);
- pen.beginPath();pen.moveTo(x0,Y(0));pen.lineTo(x0+w,Y(0));pen.stroke();
- for(let k=3;k>=0;k--){pen.strokeStyle=k===3?style('--ink'):looks[k];pen.lineWidth=(k===3?3:1.6)*d;pen.beginPath();F.forEach((f,t)=>t?pen.lineTo(X(t),Y(f[k])):pen.moveTo(X(t),Y(f[k])));pen.stroke();}
- const t=Math.min(frame,F.length-1);pen.strokeStyle=style('--push');pen.lineWidth=d;pen.beginPath();pen.moveTo(X(t),y0);pen.lineTo(X(t),y0+h);pen.stroke();
- pen.font=12*d+'px system-ui,sans-serif';pen.textAlign='left';pen.fillStyle=style('--ink');pen.fillText(Math.round(most)+' N along the push, '+data.story.person,x0+6*d,y0+14*d);
- ['net (thick)','push','others','own response'].forEach((text,k)=>{pen.fillStyle=k?looks[k-1]:style('--ink');pen.fillText(text,x0+(6+80*k)*d,y0+h-6*d);});
- data.story.moments.forEach((m,i)=>{const b=$('moment'+i);b.setAttribute('aria-current',frame>=m[0]&&frame<m[1]?'true':'false');});}
-if(data.story)data.story.moments.forEach((m,i)=>{$('moment'+i).onclick=()=>{play(false);frame=m[0];draw();};});
 function draw(){const d=devicePixelRatio||1;view.width=view.clientWidth*d;view.height=view.clientHeight*d;
  pen.lineCap='round';pen.clearRect(0,0,view.width,view.height);floor();
  const hips=new Map(),labels=[];
@@ -106,9 +125,48 @@ function draw(){const d=devicePixelRatio||1;view.width=view.clientWidth*d;view.h
   if(pushed.has(name))ring(p,Math.max(8*d,90*p[2]),style('--push'));
   if(on('names')){const top=project(h[0],h[1],h[2]+(bodies?900:250));nameAt(name,top[0],top[1]-6*d,labels);}}
  for(const p of data.pushes){const F=p.force[frame-p.start],h=hips.get(p.person);if(F&&h)arrow(h,F);}
- inset();storyPanel();
+ inset();
  $('clock').textContent=(frame*data.dt).toFixed(2)+' s, frame '+frame;$('time').value=frame;}
+let playing=false,last=0;
+function tick(now){if(!playing)return;const steps=(now-last)/1000/data.dt*$('speed').value;
+ if(steps>=1){frame+=Math.floor(steps);last=now;if(frame>=data.frames)frame=0;draw();}requestAnimationFrame(tick);}
+function play(on){playing=on;$('play').textContent=on?'Pause':'Play';if(on){last=performance.now();if(frame>=data.frames-1)frame=0;requestAnimationFrame(tick);}}
+$('play').onclick=()=>play(!playing);$('time').oninput=e=>{play(false);frame=+e.target.value;draw();};
+for(const box of document.querySelectorAll('input[type=checkbox]'))box.onchange=draw;
+view.onpointerdown=e=>{view.setPointerCapture(e.pointerId);view.onpointermove=m=>{turn+=m.movementX*0.008;
+ tilt=Math.min(1.5,Math.max(-0.1,tilt+m.movementY*0.006));draw();};};
+view.onpointerup=view.onpointercancel=()=>{view.onpointermove=null;};
+if(framed)view.style.touchAction='pan-y'; // what is around it scrolls
+view.onwheel=e=>{if(framed&&!e.ctrlKey)return;e.preventDefault();zoom=Math.min(8,Math.max(0.3,zoom*Math.exp(-e.deltaY*0.001)));draw();};
+onkeydown=e=>{if(e.key===' '&&e.target.tagName!=='BUTTON'){e.preventDefault();play(!playing);}
+ const step={ArrowLeft:-1,ArrowRight:1}[e.key];if(step&&e.target.id!=='time'){play(false);frame=Math.min(data.frames-1,Math.max(0,frame+step));draw();}};
+function choose(which){data=all[which];$('title').textContent=data.title;$('time').max=data.frames-1;frame=0;open();}
+if(all.length>1){const list=document.createElement('select');list.id='recording';list.setAttribute('aria-label','recording');
+ all.forEach((one,i)=>list.add(new Option(one.title,i)));list.onchange=()=>{play(false);choose(list.value);draw();};
+ $('title').before(list);$('title').hidden=true;}
+choose(0);
+const wanted=new URLSearchParams(location.search).get('frame')||location.hash.slice(1);
+if(wanted)frame=Math.min(data.frames-1,Math.max(0,+wanted||0));
+onresize=draw;draw();
+</script></body></html>
 )html";
+
+// A "</script>" within a text must not end the script.
+std::string ForScript(std::string json) {
+  for (size_t at = 0; (at = json.find("</", at)) != std::string::npos; at += 3) {
+    json.replace(at, 2, "<\\/");
+  }
+  return json;
+}
+
+// The motion fills most of the window; the page is longer than that.
+std::string FiguresHtml(const std::vector<std::string>& figures) {
+  if (figures.empty()) return "";
+  std::string html = "<style>body{height:auto}canvas{flex:none;height:80vh}" +
+                     std::string(SvgStyle()) + "</style>\n<section>\n";
+  for (const std::string& figure : figures) html += figure + "\n";
+  return html + "</section>\n";
+}
 
 std::string Chip(const std::string& colour) {
   return "<span class=\"chip\" style=\"background:" + colour + "\"></span>";
@@ -166,32 +224,14 @@ std::string Choices(const std::vector<Animation>& animations) {
     html += Box("above", "from above");
   }
   if (in_one([](const Animation& a) { return !a.pushes.empty(); })) {
-    html += "<span>" + Chip(kAnimatedPushColour) + " pushed, and the push</span>\n";
+    html += "<span>" + Chip("var(--push)") + " pushed, and the push</span>\n";
   }
   return html;
 }
 
-std::string StoryHtml(const Animation& animation) {
-  if (!animation.story) return "";
-  const ForceStory& story = animation.story->story;
-  std::string html = "<div style=\"flex-basis:100%\">" + EscapeXml(animation.story->person) + ": ";
-  for (size_t i = 0; i < story.moments.size(); ++i) {
-    html += "<button class=\"moment\" id=\"moment" + std::to_string(i) + "\">" +
-            Rounded(story.moments[i].from * animation.dt, 3) + " s " +
-            EscapeXml(story.moments[i].text) + "</button>\n";
-  }
-  return html + "</div>\n";
-}
-
-// True where a strip of poses draws a person's joints: a body's, or those of people without a
-// pendulum.
-bool ShowsJoints(const AnimatedPerson& person, int t) {
-  return t < static_cast<int>(person.joints.size()) && (person.head >= 0 || person.tip.empty());
-}
-
 int Whole(double value) { return static_cast<int>(std::lround(value)); }
 
-// Every so many frames the places of all points, mm, each less that of the sample before: small
+// Places of all points every so many frames, mm, each less that of the sample before: small
 // numbers.
 template <typename Points>
 nlohmann::json Samples(const std::vector<Points>& frames, int every) {
@@ -271,214 +311,7 @@ nlohmann::json AnimationJson(const Animation& animation, double sample_seconds) 
     data["pushes"].push_back(
         {{"person", push.person}, {"start", push.start}, {"force", std::move(force)}});
   }
-  if (animation.story) {
-    const ForceStory& story = animation.story->story;
-    nlohmann::json moments = nlohmann::json::array(), forces = nlohmann::json::array();
-    for (const StoryMoment& moment : story.moments) moments.push_back({moment.from, moment.to});
-    for (const std::array<double, 4>& f : story.forces) {
-      forces.push_back({Whole(f[0]), Whole(f[1]), Whole(f[2]), Whole(f[3])});
-    }
-    data["story"] = {{"person", animation.story->person},
-                     {"moments", std::move(moments)},
-                     {"forces", std::move(forces)}};
-  }
   return data;
-}
-
-constexpr double kStripHeight = 226, kTop = 56, kBottom = 34, kSide = 16;
-constexpr double kHighest = 2.05;          // m, of a panel
-constexpr double kNewtonsPerMetre = 1000;  // length of force arrows
-constexpr double kLeastForce = 5.0;        // N, that is drawn
-
-constexpr char kRecordedLook[] = "stroke:#9a9a9a;stroke-width:2;opacity:0.8";
-constexpr char kPendulumLook[] = "stroke:#d1495b;stroke-width:1.5;stroke-dasharray:4 3";
-constexpr char kForceLook[] = "stroke:#e0a100;stroke-width:3";
-
-std::string PushLook() {
-  return std::string("fill:none;stroke-width:2.5;stroke:") + kAnimatedPushColour;
-}
-
-// Right limbs darker than left ones, so that a pose reads from the side.
-bool OnRight(int joint) { return (joint >= 6 && joint < 10) || (joint >= 14 && joint < 18); }
-
-std::string ColourOfWhat(int what) {
-  return kAnimationColours[static_cast<size_t>(what) % std::size(kAnimationColours)];
-}
-
-std::string BoneLook(const AnimatedPerson& person, int what, bool paler) {
-  if (person.recorded) return kRecordedLook;
-  return "stroke:" + ColourOfWhat(what) + ";stroke-width:2.2" + (paler ? ";opacity:0.6" : "");
-}
-
-// One moment: offset puts x = 0 m at a pixel.
-class Panel {
- public:
-  Panel(double pixels_per_metre, double x_pixel, double floor_pixel, SvgPicture* svg)
-      : scale_(pixels_per_metre), x_(x_pixel), floor_(floor_pixel), svg_(svg) {}
-
-  // `what`: which of the what-ifs; several are told apart by their pendulums too.
-  void Draw(const AnimatedPerson& person, int what, bool several, int t) {
-    if (ShowsJoints(person, t)) {
-      const Eigen::Matrix3Xd& joints = person.joints[t];
-      for (size_t j = 0; j < person.parents.size(); ++j) {
-        if (person.parents[j] < 0) continue;
-        const bool paler = person.head < 0 || !OnRight(static_cast<int>(j));
-        Bone(joints.col(person.parents[j]), joints.col(static_cast<int>(j)),
-             BoneLook(person, what, paler));
-      }
-      if (person.head >= 0) {
-        const Eigen::Vector3d head = joints.col(person.head);
-        svg_->Circle(X(head), Y(head), 0.085 * scale_,
-                     person.recorded ? "fill:#9a9a9a;opacity:0.6" : "fill:" + ColourOfWhat(what));
-      }
-    }
-    const bool hidden = person.recorded && person.head >= 0;  // the body says it all
-    if (t < static_cast<int>(person.cart.size()) && !hidden) {
-      const std::string colour = several ? ColourOfWhat(what) : "#d1495b";
-      Bone(person.cart[t], person.tip[t],
-           person.recorded ? kRecordedLook
-           : several       ? "stroke:" + colour + ";stroke-width:1.5"
-                           : kPendulumLook);
-      svg_->Circle(X(person.tip[t]), Y(person.tip[t]), 3,
-                   "fill:" + (person.recorded ? "#9a9a9a" : colour));
-    }
-    if (t >= static_cast<int>(person.force.size())) return;
-    const Eigen::Vector3d force(person.force[t][0], person.force[t][1], 0.0);
-    if (force.norm() < kLeastForce) return;
-    Bone(person.tip[t], person.tip[t] + force / kNewtonsPerMetre, kForceLook);
-  }
-
-  // The feet that stand, the left one paler; recorded ones under predicted ones.
-  void DrawFeet(const AnimatedPerson& person, int what, int t) {
-    for (const Footprint& print : person.footprints) {
-      if (t < print.landing || t >= print.lift_off) continue;
-      const double ahead = std::cos(person.facing), x = x_ + scale_ * print.place.x();
-      const double y = floor_ + (person.recorded ? 6.5 : 2.5);
-      const char* const paler = print.foot == Foot::kLeft ? ";opacity:0.5" : "";
-      svg_->Line(x - scale_ * kSoleBehind * ahead, y, x + scale_ * kSoleBefore * ahead, y,
-                 "stroke-width:3;stroke:" +
-                     (person.recorded ? std::string("#9a9a9a") : ColourOfWhat(what)) + paler);
-    }
-  }
-
-  // A ring round the hip of who is pushed; while it acts the push, which ends there, and its size.
-  void Mark(const Eigen::Vector3d& hip, const AnimatedPush& push, int t) {
-    svg_->Circle(X(hip), Y(hip), 7, PushLook());
-    if (t < push.start || t >= push.start + static_cast<int>(push.force.size())) return;
-    const Vector4<double>& force = push.force[t - push.start];
-    const double size = force.head<2>().norm();
-    if (size < kLeastForce) return;
-    Bone(hip - Eigen::Vector3d(force[0], force[1], 0.0) / kNewtonsPerMetre, hip, PushLook());
-    const double back = force[0] < 0.0 ? 6.0 : -6.0;
-    for (const double side : {-4.0, 4.0}) {
-      svg_->Line(X(hip), Y(hip), X(hip) + back, Y(hip) + side, PushLook());
-    }
-    svg_->Text(X(hip), kTop + 4, SvgNumber(std::round(size)) + " N", "ink small middle");
-  }
-
- private:
-  double X(const Eigen::Vector3d& p) const { return x_ + scale_ * p.x(); }
-  double Y(const Eigen::Vector3d& p) const { return floor_ - scale_ * p.z(); }
-  void Bone(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const std::string& look) {
-    svg_->Line(X(a), Y(a), X(b), Y(b), look);
-  }
-
-  const double scale_, x_, floor_;
-  SvgPicture* svg_;
-};
-
-// A person's hip; none beyond the last frame.
-std::optional<Eigen::Vector3d> HipAt(const AnimatedPerson& person, int t) {
-  if (t < static_cast<int>(person.tip.size())) return person.tip[t];
-  if (person.head >= 0 && ShowsJoints(person, t)) return person.joints[t].col(0);
-  return std::nullopt;
-}
-
-// The way of everybody's joints, or hips, from one frame to the next: the sum over people.
-double MotionTo(const Animation& animation, int t) {
-  double sum = 0.0;
-  for (const AnimatedPerson& person : animation.people) {
-    if (ShowsJoints(person, t)) {
-      sum += (person.joints[t] - person.joints[t - 1]).colwise().norm().mean();
-    } else if (t < static_cast<int>(person.tip.size())) {
-      sum += (person.tip[t] - person.tip[t - 1]).norm();
-    }
-  }
-  return sum;
-}
-
-// Frames that part the motion into equal stretches, first and last among them; in time where
-// nothing moves. Even frames would show a fall in one pose and waiting in six.
-std::vector<int> FramesByMotion(const Animation& animation, int poses) {
-  const int last = animation.num_frames() - 1;
-  std::vector<double> way = {0.0};
-  for (int t = 1; t <= last; ++t) way.push_back(way.back() + MotionTo(animation, t));
-  std::vector<int> frames;
-  for (int i = 0; i < poses; ++i) {
-    const double share = poses > 1 ? static_cast<double>(i) / (poses - 1) : 0.0;
-    const auto there = std::lower_bound(way.begin(), way.end(), share * way.back());
-    const int by_motion = static_cast<int>(std::min<std::ptrdiff_t>(last, there - way.begin()));
-    const int by_time = static_cast<int>(std::lround(share * last));
-    frames.push_back(way.back() > 0.0 ? (i == poses - 1 ? last : by_motion) : by_time);
-  }
-  return frames;
-}
-
-// The frame of the hardest push takes the place of the nearest one: a short push would fall between
-// two.
-std::vector<int> FramesWithPush(const Animation& animation, int poses) {
-  std::vector<int> frames = FramesByMotion(animation, poses);
-  int hardest = -1;
-  double most = kLeastForce;
-  for (const AnimatedPush& push : animation.pushes) {
-    for (size_t i = 0; i < push.force.size(); ++i) {
-      const double size = push.force[i].head<2>().norm();
-      if (size > most) most = size, hardest = push.start + static_cast<int>(i);
-    }
-  }
-  if (hardest < 0 || hardest >= animation.num_frames() || poses < 3) return frames;
-  const auto nearest = std::min_element(
-      frames.begin() + 1, frames.end() - 1,
-      [hardest](int a, int b) { return std::abs(a - hardest) < std::abs(b - hardest); });
-  if (std::find(frames.begin(), frames.end(), hardest) == frames.end()) *nearest = hardest;
-  std::sort(frames.begin(), frames.end());
-  return frames;
-}
-
-// The legend of what the strip draws.
-std::vector<LegendEntry> LegendOf(const Animation& animation) {
-  std::vector<LegendEntry> legend;
-  if (AnyPerson(animation, IsRecorded)) legend.push_back({"recorded", kRecordedLook});
-  const std::vector<std::string> whats = WhatsOf(animation);
-  const bool bodies =
-      AnyPerson(animation, [](const AnimatedPerson& p) { return !p.recorded && p.head >= 0; });
-  for (size_t k = 0; k < whats.size(); ++k) {
-    const bool alone = whats.size() == 1 && whats[0].empty();
-    if (alone && !bodies) continue;  // pendulums have an entry of their own
-    legend.push_back({alone              ? "predicted, left limbs paler"
-                      : whats[k].empty() ? kAsFitted
-                                         : whats[k],
-                      "stroke-width:2.5;stroke:" + ColourOfWhat(static_cast<int>(k))});
-  }
-  if (whats.size() == 1 &&
-      AnyPerson(animation, [](const AnimatedPerson& p) { return !p.recorded && !p.tip.empty(); })) {
-    legend.push_back({"pendulum", kPendulumLook});
-  }
-  if (AnyPerson(animation, HasForce)) legend.push_back({"net force, 1 m = 1000 N", kForceLook});
-  if (!animation.pushes.empty()) legend.push_back({"pushed person and push", PushLook()});
-  return legend;
-}
-
-// Smallest and largest x of everything that is shown.
-std::pair<double, double> ExtentX(const Animation& animation) {
-  double low = 1e9, high = -1e9;
-  const auto see = [&](double x) { low = std::min(low, x), high = std::max(high, x); };
-  for (const AnimatedPerson& person : animation.people) {
-    for (const auto& tip : person.tip) see(tip.x());
-    if (!ShowsJoints(person, 0)) continue;
-    for (const auto& p : person.joints) see(p.row(0).minCoeff()), see(p.row(0).maxCoeff());
-  }
-  return low > high ? std::make_pair(-1.0, 1.0) : std::make_pair(low - 0.1, high + 0.1);
 }
 
 }  // namespace
@@ -489,10 +322,11 @@ std::string AnimationHtml(const std::vector<Animation>& animations, double sampl
     data.push_back(AnimationJson(animation, sample_seconds));
   }
   const Animation& first = animations.front();
-  const std::string push = std::string("--push:") + kAnimatedPushColour + ";";
-  return ToHtml({"People in motion", push + "--grid:#ddd;--recorded:#8a8a8a",
-                 push + "--grid:#3a3f46;--recorded:#a0a0a0", Choices(animations) + StoryHtml(first),
-                 std::move(data), kScript, first.figures});
+  return kHead + EscapeXml(first.title) + kStyle + Choices(animations) +
+         (first.told.empty() ? ""
+                             : "<p style=\"flex-basis:100%\">" + EscapeXml(first.told) + "</p>\n") +
+         kCanvas + FiguresHtml(first.figures) + "<script>\nconst all=" +
+         ForScript(data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)) + kScript;
 }
 
 void AnimatedPerson::SetBody(const BodyMotion& body) {
@@ -506,7 +340,7 @@ int Animation::num_frames() const {
   size_t frames = 0;
   for (const AnimatedPerson& person : people) {
     frames = std::max(frames, person.tip.size());
-    if (ShowsJoints(person, 0)) frames = std::max(frames, person.joints.size());
+    if (person.head >= 0 || person.tip.empty()) frames = std::max(frames, person.joints.size());
   }
   return static_cast<int>(frames);
 }
@@ -574,46 +408,6 @@ void AddForecast(const std::vector<std::string>& names, const std::vector<BodyMo
     person.SetBody(bodies[n]);
     animation->people.push_back(std::move(person));
   }
-}
-
-SvgPicture PoseStrip(const Animation& animation, int poses) {
-  const auto [low, high] = ExtentX(animation);
-  const double scale = (kStripHeight - kTop - kBottom) / kHighest;
-  const double panel = scale * (high - low) + kSide;
-  const double floor = kStripHeight - kBottom;
-  const std::vector<LegendEntry> legend = LegendOf(animation);
-  const double width = std::max({480.0, panel * poses + kSide, 2.0 * kSide + LegendWidth(legend)});
-  SvgPicture svg(width, kStripHeight, animation.title);
-  svg.Text(kSide, 18, animation.title, "ink bold");
-  DrawLegend(legend, kSide, 38, &svg);
-  svg.Line(0, floor, panel * poses + kSide, floor, "axis");
-  const std::vector<std::string> whats = WhatsOf(animation);
-  const std::vector<int> frames = FramesWithPush(animation, poses);
-  for (int i = 0; i < poses; ++i) {
-    const int t = frames[i];
-    const double left = kSide + panel * i;
-    Panel drawn(scale, left - scale * low, floor, &svg);
-    for (const bool recorded : {true, false}) {
-      for (const AnimatedPerson& person : animation.people) {
-        if (person.recorded != recorded) continue;
-        const auto what = std::find(whats.begin(), whats.end(), person.what) - whats.begin();
-        drawn.Draw(person, static_cast<int>(what), whats.size() > 1, t);
-        drawn.DrawFeet(person, static_cast<int>(what), t);
-      }
-    }
-    for (const AnimatedPush& push : animation.pushes) {
-      // The last of the name: predicted before recorded.
-      for (auto p = animation.people.rbegin(); p != animation.people.rend(); ++p) {
-        const auto hip = HipAt(*p, t);
-        if (p->name != push.person || !hip) continue;
-        drawn.Mark(*hip, push, t);
-        break;
-      }
-    }
-    svg.Text(left + 0.5 * (panel - kSide), floor + 22, Rounded(t * animation.dt, 3) + " s",
-             "axis middle");
-  }
-  return svg;
 }
 
 }  // namespace pushid

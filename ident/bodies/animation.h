@@ -1,14 +1,11 @@
-// ident: moving people as pictures: one web page with a time slider, and a strip of poses.
+// ident: moving people as one web page with a time slider, which needs no other file.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "ident/bodies/body_recording.h"
-#include "ident/figures/svg.h"
 #include "ident/prediction/predicted_steps.h"
-#include "ident/prediction/propagation.h"
 
 namespace pushid {
 
@@ -38,18 +35,12 @@ struct AnimatedPush {
   std::vector<Vector4<double>> force;
 };
 
-// One person's forces in words (prediction/propagation.h), beside the motion.
-struct AnimatedStory {
-  std::string person;
-  ForceStory story;
-};
-
 struct Animation {
   std::string title;
   double dt = 1.0 / 60.0;  // s
   std::vector<AnimatedPerson> people;
   std::vector<AnimatedPush> pushes;
-  std::optional<AnimatedStory> story;
+  std::string told;                  // words beside the motion; may be empty
   std::vector<std::string> figures;  // SVG, below the motion
 
   int num_frames() const;
@@ -74,24 +65,16 @@ void AddForecast(const std::vector<std::string>& names, const std::vector<BodyMo
 
 // One self-contained page: no network, no library; of several animations one is chosen by its
 // title. sample_seconds: between positions that are written and those between them interpolated,
-// for small files; 0: every frame. A story and figures are the first animation's. Play, time
-// slider, orbit by mouse or touch, zoom by wheel, and what is shown by check boxes. Feet that step
-// leave their prints, with the times of landings, which fade when they leave. The ground has marks
-// in metres from where the pushed person starts; a group is seen from above as well; a story stands
-// beside with its forces, and its moments lead to their frames.
+// for small files; 0: every frame. Words and figures are the first animation's. Play, time slider,
+// orbit by mouse or touch, zoom by wheel, and what is shown by check boxes. Feet that step leave
+// their prints, with the times of landings, which fade when they leave. The ground has marks in
+// metres from where the pushed person starts; a group is seen from above as well.
 std::string AnimationHtml(const std::vector<Animation>& animations, double sample_seconds = 0.0);
 
 // Colours that the colour-blind tell apart, on light and on dark paper: of people, or of what-ifs
 // where there are some. A push is orange, so none of them is.
 inline constexpr const char* kAnimationColours[] = {"#2a78c8", "#009e73", "#cc79a7",
                                                     "#a08000", "#56b4e9", "#7a5fd0"};
-inline constexpr char kAnimatedPushColour[] = "#d55e00";
-
-// `poses` moments from first to last frame, between which people move equally far, and the hardest
-// moment of a push among them, seen from the side (x to the right, z up), recorded bodies grey
-// behind predicted ones in colour; under the ground the feet that stand.
-SvgPicture PoseStrip(const Animation& animation, int poses);
-inline constexpr int kPosesOfStrip = 6;  // where nobody says how many
 
 // Distances from an ankle to the ends of a foot as it is drawn, m.
 inline constexpr double kSoleBehind = 0.06, kSoleBefore = 0.19;

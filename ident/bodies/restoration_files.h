@@ -80,7 +80,7 @@ MaybeError WriteNpy(const std::string& path, const std::vector<float>& values);
 // Errors: no .npy file, another type, order or number of dimensions, cut off.
 Result<std::vector<float>> ReadNpy(const std::string& path);
 
-// In the settings of a restoration: a name of RestorationView (of kWindow and kCvae), of
+// Keys in the settings of a restoration: a name of RestorationView (of kWindow and kCvae), of
 // CvaeCoordinates, whether the body has two networks, and a name of CvaeTraining (of kCvae). Files
 // of before have none of them.
 inline constexpr char kViewKey[] = "sees";
@@ -88,7 +88,7 @@ inline constexpr char kCvaeCoordinatesKey[] = "coordinates";
 inline constexpr char kCvaeHalvesKey[] = "halves";
 inline constexpr char kCvaeTrainingKey[] = "training";
 
-// In its training: the most people of one recording that it learned from.
+// Key in its training: the most people of one recording that it learned from.
 inline constexpr char kMostPeopleKey[] = "most_people";
 
 std::vector<std::string> TrainedKinds();  // names of the restorations that have a folder

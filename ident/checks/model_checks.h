@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "ident/figures/screen.h"
+#include "ident/figures/text_table.h"
 #include "ident/model/fitted_model.h"
 
 namespace pushid {

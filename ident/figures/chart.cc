@@ -167,7 +167,7 @@ class Panel {
     svg_.Text(from, y, Cut(chart_.title, end - from, kBoldLetter), "ink bold");
   }
 
-  // Between the plot and its axis.
+  // The lanes stand between the plot and its axis.
   void Lanes() {
     double y = bottom_ + 2;
     for (const ChartLane& lane : chart_.lanes) {

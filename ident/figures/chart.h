@@ -50,7 +50,7 @@ struct ChartLane {
 // Along x, in a row of y_categories.
 struct ChartBar {
   double row = 0.0, from = 0.0, to = 0.0;
-  std::string look = {}, tooltip = {};
+  std::string look, tooltip = {};
 };
 
 struct Chart {

@@ -118,7 +118,7 @@ std::string Numbers(std::initializer_list<std::pair<const char*, double>> number
 
 using Rgb = std::array<double, 3>;
 
-// Between stops of even distance; at in [0, 1], clamped.
+// A colour between stops of even distance; at in [0, 1], clamped.
 template <size_t N>
 std::string Blend(const std::array<Rgb, N>& stops, double at) {
   const double place = std::clamp(at, 0.0, 1.0) * (N - 1);

@@ -1,16 +1,25 @@
-// ident: tables of text, columns padded, numbers to the right; how a column is called.
-//
-// One table serves a terminal (ToString), a page and a CSV file (report/document.h).
+// ident: text for a terminal: lines, tables, and one screen, which is what a program prints first.
 #pragma once
 
+#include <algorithm>
 #include <initializer_list>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "datasets/files/number_text.h"
 
 namespace pushid {
+
+inline constexpr size_t kTextColumns = 100;  // of all text for a terminal
+
+// Breaks a line at spaces; a word that is wider than the columns keeps its line to itself.
+std::vector<std::string> BrokenLine(const std::string& line, size_t columns = kTextColumns);
+// Lines of at most kTextColumns.
+std::string TextLines(const std::string& text);
+// A command to copy: lines end as a shell wants them where they are broken; with quotes it is one.
+std::string CommandLines(const std::string& command);
 
 // A cell: words and counts as they are; other numbers at full precision, for files. Tables for
 // readers round (Rounded).
@@ -29,6 +38,8 @@ struct TableCell {
   std::string text;
 };
 
+// A table of text, columns padded, numbers to the right. One table serves a terminal (ToString), a
+// page and a CSV file (report/document.h).
 class TextTable {
  public:
   // A head that begins with ">" is that of a column of numbers, without the ">".
@@ -39,6 +50,8 @@ class TextTable {
   // An empty row is a blank line.
   void Add(std::vector<std::string> row);
   void Add(std::initializer_list<TableCell> row);
+  // Drops all but the header and the first rows.
+  void Keep(size_t rows) { rows_.resize(std::min(rows_.size(), rows + 1)); }
   // True where there is only a header.
   bool empty() const { return rows_.size() < 2; }
   std::string ToString() const;
@@ -57,5 +70,19 @@ std::string WithError(double value, double error);
 
 // The head of a column: "mu, N s/m", and the name alone where the unit is "1".
 std::string WithUnit(const std::string& name, const std::string& unit);
+
+// The rest is printed by --details, or where `rest` says.
+struct Screen {
+  std::string title, verdict = {};
+  std::vector<TextTable> tables = {};
+  std::vector<std::string> paragraphs = {};
+  std::vector<std::string> warnings = {};         // the most important first
+  std::pair<std::string, std::string> next = {};  // a sentence, and what to type
+  std::string rest = {};
+
+  // At most 24 lines: the last table loses rows and warnings are only counted where there are too
+  // many, of which three are printed at most.
+  std::string ToString() const;
+};
 
 }  // namespace pushid

@@ -1,4 +1,3 @@
-// ident: a forecast as a page, a strip of poses, BVH (millimetres) and CSV.
 #include "ident/forecasts/forecast_scene.h"
 
 #include <algorithm>
@@ -14,13 +13,13 @@ namespace {
 
 constexpr size_t kMostFutures = 20;  // more of them hide one another
 
-// The observed frames from one on and what follows them; axes: of the picture's x, y and z.
-AnimatedPerson PersonOf(const ForecastScene& scene, const Trajectories& next, int from,
+// The observed frames and what follows them.
+AnimatedPerson PersonOf(const ForecastScene& scene, const Trajectories& next,
                         const std::string& what) {
   const ParticleLayout& layout = scene.layout;
   const int particles = layout.num_particles();
   const int axes[] = {3 - layout.up_axis - layout.mirrored_axis, layout.mirrored_axis,
-                      layout.up_axis};
+                      layout.up_axis};  // of the page's x, y and z
   AnimatedPerson person;
   person.what = what;
   person.parents = layout.parents;
@@ -32,7 +31,7 @@ AnimatedPerson PersonOf(const ForecastScene& scene, const Trajectories& next, in
     person.parents.push_back(layout.parents[i] == kFixedPoint ? 2 * particles : -1);
   }
   person.parents.push_back(-1);
-  for (int t = from; t < scene.num_observed() + static_cast<int>(next.cols()); ++t) {
+  for (int t = 0; t < scene.num_observed() + static_cast<int>(next.cols()); ++t) {
     const bool seen = t < scene.num_observed();
     const Eigen::VectorXf now = seen ? scene.observed.col(t) : next.col(t - scene.num_observed());
     Eigen::Matrix3Xd joints = Eigen::Matrix3Xd::Zero(3, 2 * particles + 1);
@@ -93,14 +92,16 @@ MaybeError WriteOneBvh(const std::string& path, const ForecastScene& scene,
 
 }  // namespace
 
-Animation ToAnimation(const ForecastScene& scene, int from) {
-  Animation animation{scene.title, scene.dt, {}, {}, {}, {}};
-  animation.people.push_back(PersonOf(scene, scene.recorded, from, ""));
+Animation ToAnimation(const ForecastScene& scene) {
+  Animation animation;
+  animation.title = scene.title;
+  animation.dt = scene.dt;
+  animation.people.push_back(PersonOf(scene, scene.recorded, ""));
   animation.people.back().recorded = true;
   for (size_t i = 0; i < std::min(kMostFutures, scene.futures.size()); ++i) {
-    animation.people.push_back(PersonOf(scene, scene.futures[i].motion, from, "sampled futures"));
+    animation.people.push_back(PersonOf(scene, scene.futures[i].motion, "sampled futures"));
   }
-  animation.people.push_back(PersonOf(scene, scene.forecast, from, "forecast"));
+  animation.people.push_back(PersonOf(scene, scene.forecast, "forecast"));
   double low = 0.0;
   for (const AnimatedPerson& person : animation.people) {
     for (const auto& joints : person.joints) low = std::min(low, joints.row(2).minCoeff());

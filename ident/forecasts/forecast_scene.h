@@ -35,8 +35,8 @@ Result<std::vector<std::string>> WritePoses(const std::string& path, const Forec
 // Errors: an ending that is none of these.
 MaybeError CheckPosesPath(const std::string& flag, const std::string& path);
 
-// The scene as bodies are shown, from one of the observed frames on: recorded grey, the forecast
-// and up to 20 of the futures in a colour each; the lowest point stands on the ground.
-Animation ToAnimation(const ForecastScene& scene, int from);
+// The scene as bodies are shown: recorded grey, the forecast and up to 20 of the futures in a
+// colour each; the lowest point stands on the ground.
+Animation ToAnimation(const ForecastScene& scene);
 
 }  // namespace pushid

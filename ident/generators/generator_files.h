@@ -57,19 +57,12 @@ struct GeneratorChanges {
   uint64_t seed = 1;  // of the samples that a forecast by diffusion averages
 };
 
-// Options of every seed's training, by kind.
-struct KindTrainingOptions {
-  ParticleTrainingOptions particles;
-  DiffusionTrainingOptions diffusion;
-  SimlpeTrainingOptions simlpe;  // beside particles
-};
-
 // The networks of a generator, by its kind.
 class KindNetworks {
  public:
   virtual ~KindNetworks() = default;
   virtual GeneratorKind kind() const = 0;
-  // Beside the settings of all kinds.
+  // The kind's own settings, beside those of all kinds.
   virtual nlohmann::ordered_json Settings() const = 0;
   virtual TensorList Tensors() const = 0;
   virtual std::unique_ptr<MotionGenerator> Make(const GeneratorSettings& settings,
@@ -105,9 +98,9 @@ inline constexpr GeneratorKindRow kGeneratorKinds[] = {
 constexpr const auto& Names(GeneratorKind) { return kGeneratorKinds; }
 static_assert(RowsAreInOrder(kGeneratorKinds), "RowOf finds a row by its value");
 
-// run: takes the trainer of every seed, in turn, to its end, with checkpoints of this key.
-using SeedRunner = std::function<MaybeError(Trainer* trainer, const std::string& key)>;
-// Errors: nothing to learn from; those of run.
+// Takes the trainer of every seed, in turn, to its end.
+using SeedRunner = std::function<void(Trainer* trainer)>;
+// Error: nothing to learn from.
 using GeneratorTrainer = Result<SharedNetworks>(const GeneratorSamples& samples,
                                                 const GeneratorTrainingOptions& options,
                                                 const SeedRunner& run);

@@ -111,7 +111,7 @@ class Adviser {
     }
   }
 
-  // More of it than the fit had.
+  // A settling constraint that is stronger than the fit's.
   FitCommand SettleHarder(double weight) const {
     const double more = std::max(weight, 2.0 * result_.options.settling_weight);
     return Same().Set("settling_weight", Rounded(more, 6));

@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "datasets/files/names.h"
-#include "ident/figures/screen.h"
 #include "ident/figures/svg.h"
+#include "ident/figures/text_table.h"
 
 namespace pushid {
 namespace {
@@ -152,7 +152,7 @@ std::string SectionHtml(const ReportSection& section) {
   for (const ReportFold& fold : section.folds) {
     std::string in_fold;
     for (const ReportFigure& figure : fold.figures) in_fold += FigureHtml(figure);
-    html += Folded(fold.title, in_fold + fold.widget);
+    html += Folded(fold.title, in_fold);
   }
   return html + "</section>\n";
 }
@@ -226,15 +226,10 @@ std::string ToPage(const Report& report) {
   std::string nav, lead, body;
   bool scripted = false;
   for (const ReportSection& section : report.sections) {
-    bool widget = !section.widget.empty();
-    for (const ReportFold& fold : section.folds) widget = widget || !fold.widget.empty();
-    if (section.alarm.empty() && section.paragraphs.empty() && section.advice.empty() &&
-        section.tables.empty() && section.figures.empty() && section.folds.empty() && !widget) {
-      continue;
-    }
+    if (section.empty()) continue;
+    scripted = scripted || !section.widget.empty();
     nav += "<li><a href=\"#" + section.id + "\">" + EscapeXml(section.title) + "</a></li>\n";
     (lead.empty() ? lead : body) += SectionHtml(section);
-    scripted = scripted || widget;
   }
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"

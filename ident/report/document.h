@@ -28,7 +28,6 @@ struct ReportFigure {
 struct ReportFold {
   std::string title;
   std::vector<ReportFigure> figures;
-  std::string widget = {};  // HTML for a page, as in a section
 };
 
 struct ReportSection {
@@ -43,6 +42,10 @@ struct ReportSection {
   std::string alarm = {};      // before everything else, and in red
   bool verdict_first = false;  // the first paragraph stands before the figures
 
+  bool empty() const {
+    return alarm.empty() && paragraphs.empty() && advice.empty() && tables.empty() &&
+           figures.empty() && folds.empty() && widget.empty();
+  }
   // A further paragraph or table, unless there is nothing in it.
   void Say(const std::string& text) {
     if (!text.empty()) paragraphs.push_back(text);

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <tuple>
+#include <functional>
+#include <map>
 
 #include "datasets/files/error.h"
 #include "datasets/files/names.h"
@@ -17,6 +17,48 @@
 #include "ident/uncertainty/covariance.h"
 
 namespace pushid {
+namespace {
+
+// -2 log likelihood, AIC, BIC and what they may be compared with; there must be a likelihood.
+std::string LikelihoodText(const FitResult& result) {
+  const LikelihoodScore& score = *result.likelihood;
+  return "likelihood " + NameOf(result.options.likelihood) + ", noise " +
+         NameOf(result.options.model.process_noise) + ": -2 log L " + Rounded(score.deviance, 7) +
+         " of " + std::to_string(score.measured) + " values, AIC " + Rounded(score.Aic(), 7) +
+         ", BIC " + Rounded(score.Bic(), 7) + " (" + CountText(score.parameters, "parameter") +
+         "); compare only with models of the same likelihood and the same recordings\n" +
+         (AnyPooled(result.options.table) ? "  units' deviations are not counted as parameters: "
+                                            "compare only models with the same pooling\n"
+                                          : "") +
+         "  this likelihood is of single steps; settling, errors and outliers below are those of\n"
+         "  rollouts";
+}
+
+// "motion: low-pass at 6 Hz (zero-phase Butterworth), resampled to 60 frames per second", and on a
+// line of its own whether this is a bootstrap's replica; from the flags that a result keeps.
+std::string PreparationText(const std::map<std::string, std::string>& configuration) {
+  const auto flag = [&configuration](const char* name) {
+    const auto found = configuration.find(name);
+    double value = 0.0;
+    return found != configuration.end() && ParseDouble(found->second, &value) ? value : 0.0;
+  };
+  std::string text;
+  const double cutoff = flag("lowpass_hz"), rate = flag("resample_fps");
+  if (cutoff > 0.0) text = "low-pass at " + Rounded(cutoff) + " Hz (zero-phase Butterworth)";
+  if (rate > 0.0) {
+    text += (text.empty() ? "" : ", ") + std::string("resampled to ") + Rounded(rate) +
+            " frames per second";
+  }
+  if (!text.empty()) text = "motion: " + text + "\n";
+  const double replica = flag("replica");
+  if (replica > 0.0) {
+    text += "recordings: drawn with replacement, as replica " + Rounded(replica) +
+            " of a bootstrap (--replica)\n";
+  }
+  return text;
+}
+
+}  // namespace
 
 ReportSection ShortSection(const FittedModel& model, const std::string& more) {
   ReportSection section{"short", "In short"};
@@ -56,9 +98,9 @@ ReportSection SummarySection(const FittedModel& model) {
   if (RodMoves(o.model)) facts.Add({"rod", RodName(o.model.learned->rod)});
   facts.Add({"interaction", InteractionText(o.model)});
   if (model.fit.ok()) {
-    const int iterations = model.fit.starts[model.fit.best_start].iterations;
-    facts.Add(
-        {"cost", Rounded(model.fit.cost, 6) + " after " + CountText(iterations, "iteration")});
+    const SolveStart& best = model.fit.starts[model.fit.best_start];
+    facts.Add({"cost", Rounded(model.fit.cost, 6) + " after " +
+                           CountText(best.iterations, "iteration") + ": " + best.message});
   }
   const std::vector<RecordingDiagnostics>& recordings = model.fit.diagnostics.recordings;
   double explained = 0.0;
@@ -136,15 +178,14 @@ ReportSection LoopSection(const FittedModel& model) {
 
 namespace {
 
-constexpr size_t kMostOutliers = 20, kWorstRecordings = 5;
-constexpr double kStrongMove = 1.0;     // standard errors
+constexpr size_t kShownRecordings = 5;
 constexpr double kWorstShown = -300.0;  // % explained; bars of worse ones are cut
 
 // The recordings that are explained least, and the parameter that changes most without each.
 TextTable WorstTable(std::vector<const RecordingDiagnostics*> worst, const Leverage& leverage) {
   TextTable table({"explained least", ">% of motion", ">cost", ">down-weighted frames",
                    "change without it (std errors)"});
-  for (size_t k = worst.size(); k-- > 0 && worst.size() - k <= kWorstRecordings;) {
+  for (size_t k = worst.size(); k-- > 0 && worst.size() - k <= kShownRecordings;) {
     std::string change;
     for (size_t g = 0; g < leverage.recordings.size(); ++g) {
       const std::vector<double>& row = leverage.in_errors[g];
@@ -176,41 +217,6 @@ Chart ExplainedChart(const std::vector<const RecordingDiagnostics*>& recordings)
   return chart;
 }
 
-// Outliers in consecutive frames: "85 - 104".
-struct OutlierRun {
-  std::string recording;
-  int person = 0, from = 0, to = 0;
-  double worst = 0.0, weight = 1.0;
-};
-
-TextTable OutlierTable(const Diagnostics& d) {
-  std::vector<OutlierRun> runs;
-  for (const RecordingDiagnostics& r : d.recordings) {
-    std::vector<Outlier> outliers = r.outliers;
-    std::sort(outliers.begin(), outliers.end(), [](const Outlier& a, const Outlier& b) {
-      return std::make_tuple(a.person, a.frame) < std::make_tuple(b.person, b.frame);
-    });
-    for (const Outlier& o : outliers) {
-      const bool goes_on = !runs.empty() && runs.back().recording == r.id &&
-                           runs.back().person == o.person && runs.back().to + 1 == o.frame;
-      if (!goes_on) runs.push_back({r.id, o.person, o.frame, o.frame});
-      OutlierRun& run = runs.back();
-      run.to = o.frame;
-      run.worst = std::max(run.worst, o.error);
-      run.weight = std::min(run.weight, o.weight);
-    }
-  }
-  std::stable_sort(runs.begin(), runs.end(),
-                   [](const OutlierRun& a, const OutlierRun& b) { return a.weight < b.weight; });
-  if (runs.size() > kMostOutliers) runs.resize(kMostOutliers);
-  TextTable table({"recording", ">person", "frames", ">worst error, sigmas", ">least weight kept"});
-  for (const OutlierRun& run : runs) {
-    table.Add({run.recording, run.person, std::to_string(run.from) + " - " + std::to_string(run.to),
-               Rounded(run.worst, 3), Rounded(run.weight, 2)});
-  }
-  return table;
-}
-
 }  // namespace
 
 ReportSection RecordingSection(const FittedModel& model) {
@@ -232,47 +238,33 @@ ReportSection RecordingSection(const FittedModel& model) {
                              {{}, {ExplainedChart(sorted)}},
                              numbers});
   section.Show("", WorstTable(sorted, d.leverage));
-  section.Show("intervals that have less than half their weight in the robust loss (the 20 worst)",
-               OutlierTable(d));
   return section;
 }
 
 ReportSection LeverageSection(const FittedModel& model) {
   ReportSection section{"leverage", "Influence of each recording"};
   const Leverage& l = model.fit.diagnostics.leverage;
-  if (l.recordings.empty()) return section;
-  Chart map{"change without it, standard errors"};
-  map.x_categories = l.parameters;
-  map.full_cell = kStrongMove;
-  map.width = kWidestMap;
-  std::vector<size_t> order(l.recordings.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto largest = [&l](size_t g) {
+  std::multimap<double, size_t, std::greater<>> strongest;  // largest move, and whose it is
+  for (size_t g = 0; g < l.recordings.size(); ++g) {
     double most = 0.0;
     for (double move : l.in_errors[g]) most = std::max(most, std::abs(move));
-    return most;
-  };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](size_t a, size_t b) { return largest(a) > largest(b); });
-  std::vector<std::string> header = {"recording"};
-  for (size_t p = 0; p < l.parameters.size(); ++p) {
-    header.push_back(l.parameters[p] + " (" + l.units[p] + ")");
+    if (!l.in_errors[g].empty()) strongest.emplace(most, g);
   }
-  TextTable numbers(header);
-  for (size_t g : order) {
-    map.y_categories.push_back(l.recordings[g]);
-    map.cells.push_back(l.in_errors[g]);
+  if (strongest.empty()) return section;
+  std::vector<std::string> header = {"without"};
+  for (const std::string& parameter : l.parameters) header.push_back(">" + parameter);
+  TextTable table(header);
+  for (const auto& [most, g] : strongest) {
     std::vector<std::string> cells = {l.recordings[g]};
-    for (double change : l.change[g]) cells.push_back(DoubleText(change));
-    numbers.Add(cells);
+    for (double move : l.in_errors[g]) cells.push_back(Rounded(move, 2));
+    table.Add(cells);
   }
-  section.figures.push_back(
-      {"leverage",
-       "Change of each parameter without one recording, in standard errors: one step with the "
-       "Hessian of all recordings, not a refit (on the 32 published recordings of single people "
-       "refits differ from it by 15 %).",
-       {{}, {map}},
-       numbers});
+  table.Keep(kShownRecordings);
+  section.Say(
+      "Change of each parameter without one recording, in standard errors, for the recordings that "
+      "change most: one step with the Hessian of all recordings, not a refit (on the 32 published "
+      "recordings of single people refits differ from it by 15 %).");
+  section.Show("", table);
   return section;
 }
 
@@ -322,52 +314,6 @@ ReportSection ResidualSection(const FittedModel& model) {
   section.Show("tests of whiteness", tests);
   section.figures.push_back(
       {"residual_correlations", "Correlations of the residuals.", figure, numbers});
-  return section;
-}
-
-ReportSection SolveSection(const FittedModel& model) {
-  ReportSection section{"solve", "Solver convergence"};
-  TextTable starts(
-      {"start", ">cost", ">iterations", "converged", ">failed recordings", "solver's message"});
-  for (const SolveStart& s : model.fit.starts) {
-    starts.Add({s.kind, s.usable ? Rounded(s.cost, 6) : "-", s.iterations,
-                s.converged ? "yes" : "no", s.failed.size(), s.message});
-  }
-  section.Show("solved from", starts);
-  const std::vector<TracePoint>& trace = model.fit.diagnostics.trace;
-  if (trace.size() < 2) return section;
-  double lowest = HUGE_VAL;
-  for (const TracePoint& point : trace) lowest = std::min(lowest, point.cost);
-  // A likelihood's costs may be negative: they count from 1 below the lowest.
-  const double base = lowest > 0.0 ? 0.0 : lowest - 1.0;
-  Chart cost, gradient;
-  cost.title = base == 0.0 ? "cost" : "1 + cost above the lowest";
-  gradient.title = "largest gradient component";
-  ChartLine c{{}, kPredictedLook, false}, g = c;
-  TextTable numbers({"step", "horizon_frames", "iteration", "cost", "gradient"});
-  for (size_t i = 0; i < trace.size(); ++i) {
-    const double step = static_cast<double>(i);
-    c.points.emplace_back(step, std::log10(std::max(1e-300, trace[i].cost - base)));
-    if (trace[i].gradient > 0.0) g.points.emplace_back(step, std::log10(trace[i].gradient));
-    numbers.Add({i, trace[i].horizon, trace[i].iteration, trace[i].cost, trace[i].gradient});
-  }
-  cost.lines = {c};
-  gradient.lines = {g};
-  for (Chart* chart : {&cost, &gradient}) {
-    chart->x_label = "iteration, over all horizons";
-    chart->logarithmic_y = true;
-    for (size_t i = 1; i < trace.size(); ++i) {
-      if (trace[i].horizon != trace[i - 1].horizon) chart->marks.push_back(static_cast<double>(i));
-    }
-  }
-  section.figures.push_back(
-      {"trace",
-       model.fit.options.likelihood == Likelihood::kTrajectory
-           ? "The best start. The cost jumps where the horizon grows (lines) and where "
-             "the weights are estimated anew."
-           : "The best start: Fisher scoring, then BFGS.",
-       {{}, {cost, gradient}},
-       numbers});
   return section;
 }
 

@@ -19,7 +19,6 @@ ReportSection LoopSection(const FittedModel& model);
 ReportSection RecordingSection(const FittedModel& model);
 ReportSection LeverageSection(const FittedModel& model);
 ReportSection ResidualSection(const FittedModel& model);
-ReportSection SolveSection(const FittedModel& model);
 ReportSection AdviceSection(const FittedModel& model);
 ReportSection ProvenanceSection(const FittedModel& model);
 

@@ -20,33 +20,7 @@ constexpr char kProfileLook[] = "fill:none;stroke-width:3;stroke:#009e73";
 constexpr char kBootstrapLook[] = "fill:none;stroke-width:3;stroke:#cc79a7";
 constexpr double kStripHeight = 50, kIntervalHeight = 6;  // pixels
 
-// A value with its intervals, one above the other, and what it is compared with (an upright line),
-// on a scale of its own. Interval ends that tell nothing are infinite.
-struct IntervalRow {
-  std::string name, unit;
-  double value = 0.0, nominal = 0.0;
-  std::vector<std::pair<Interval, std::string>> intervals;  // with their looks
-};
 constexpr char kIntervalLook[] = "fill:none;stroke-width:3;stroke:#3b82f6";
-constexpr char kToldLook[] = "fill:none;stroke-width:3;stroke:#d55e00";
-
-Chart IntervalStrip(const IntervalRow& row) {
-  Chart chart{WithUnit(row.name, row.unit)};
-  chart.bare_y = true;
-  chart.height = kStripHeight + kIntervalHeight * static_cast<double>(row.intervals.size());
-  chart.marks = {row.nominal};
-  const double rows = static_cast<double>(row.intervals.size());
-  chart.y_from = -1.0 - 0.5 * rows;
-  chart.y_to = 1.0 + 0.5 * rows;
-  double y = 0.5 * (rows - 1.0);
-  for (const auto& [interval, look] : row.intervals) {
-    chart.lines.push_back({{{interval.lower, y}, {interval.upper, y}}, look});
-    y -= 1.0;
-  }
-  chart.lines.push_back({{{row.value, 0.0}}, kMeasuredLook, true});
-  return chart;
-}
-
 // An interval with ends that tell nothing moved to infinity, which charts draw to the edge.
 Interval Shown(double value, Interval interval) {
   const Interval known = interval;
@@ -147,7 +121,7 @@ std::string SharperText(const FitResult& result) {
   return text.empty() ? "" : "Measure better and state it in the manifest: " + text + ".";
 }
 
-// Beside the interval that decides: that of the data alone, and that of these people alone.
+// The intervals beside the one that decides: of the data alone, and of these people alone.
 TextTable PartsTable(const FitResult& result) {
   TextTable table({"parameter", ">by the data alone", "95 %", ">of these people alone", "95 %",
                    "unit", "widened most by"});
@@ -282,38 +256,6 @@ TextTable SpreadTable(const FitResult& result) {
   return table;
 }
 
-constexpr double kContrastLevel = 0.05;
-
-constexpr int kBars = 24;
-
-ReportFigure CorrelationFigure(const FitResult& result) {
-  const Uncertainty& u = result.uncertainty;
-  // Deviations of units and initial velocities are left out.
-  const size_t size = std::min(result.options.table.Free().size(), u.estimates.size());
-  Chart map{"correlation of the estimates"};
-  map.width = kWidestMap;
-  std::vector<std::string> header = {"parameter"};
-  for (size_t i = 0; i < size; ++i) header.push_back(u.estimates[i].name);
-  TextTable numbers(header);
-  for (size_t i = 0; i < size; ++i) {
-    map.y_categories.push_back(u.estimates[i].name);
-    map.x_categories.push_back(u.estimates[i].name);
-    std::vector<std::string> cells = {u.estimates[i].name};
-    std::vector<double> row;
-    for (size_t j = 0; j < size; ++j) {
-      row.push_back(u.correlation(static_cast<int>(i), static_cast<int>(j)));
-      cells.push_back(DoubleText(row.back()));
-    }
-    map.cells.push_back(row);
-    numbers.Add(cells);
-  }
-  return {
-      "correlation",
-      "Near 1 or -1: the data determine the joint effect of two parameters, but not that of each.",
-      {{}, {map}},
-      numbers};
-}
-
 // True for a combination that is a multiple of one parameter: its curve is drawn already.
 bool IsAlias(const FittedModel& model, const Profile& p) {
   const FitResult& result = model.fit;
@@ -329,6 +271,8 @@ bool IsAlias(const FittedModel& model, const Profile& p) {
 
 }  // namespace
 
+// Every parameter has a chart with a scale of its own: its intervals one above the other, and what
+// it is compared with as an upright line.
 ReportFigure IntervalFigure(const FittedModel& model, bool known) {
   Figure figure;
   TextTable numbers({"parameter", "unit", "value", "nominal", "lower95", "upper95",
@@ -338,18 +282,30 @@ ReportFigure IntervalFigure(const FittedModel& model, bool known) {
     const ParameterSpec* spec = model.fit.options.table.Find(e.name);
     if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
     if (known && e.status != EstimateStatus::kIdentified) continue;
-    IntervalRow row{e.name, e.unit, e.value, spec->nominal, {}};
     std::vector<std::string> cells = {e.name, e.unit, DoubleText(e.value),
                                       DoubleText(spec->nominal)};
+    std::vector<std::pair<Interval, const char*>> intervals;
     const auto add = [&](const std::optional<Interval>& interval, const char* look) {
-      if (interval) row.intervals.push_back({Shown(e.value, *interval), look});
+      if (interval) intervals.push_back({Shown(e.value, *interval), look});
       cells.push_back(interval ? DoubleText(interval->lower) : "");
       cells.push_back(interval ? DoubleText(interval->upper) : "");
     };
     add(e.interval(), kIntervalLook);
     add(ProfileInterval(model, e.name), kProfileLook);
     add(BootstrapInterval(model, e.name), kBootstrapLook);
-    figure.panels.push_back(IntervalStrip(row));
+    const double rows = static_cast<double>(intervals.size());
+    Chart& chart = figure.panels.emplace_back(Chart{WithUnit(e.name, e.unit)});
+    chart.bare_y = true;
+    chart.height = kStripHeight + kIntervalHeight * rows;
+    chart.marks = {spec->nominal};
+    chart.y_from = -1.0 - 0.5 * rows;
+    chart.y_to = 1.0 + 0.5 * rows;
+    double y = 0.5 * (rows - 1.0);
+    for (const auto& [interval, look] : intervals) {
+      chart.lines.push_back({{{interval.lower, y}, {interval.upper, y}}, look});
+      y -= 1.0;
+    }
+    chart.lines.push_back({{{e.value, 0.0}}, kMeasuredLook, true});
     numbers.Add(cells);
   }
   figure.legend = {{"95 % interval", kIntervalLook}};
@@ -401,7 +357,6 @@ ReportSection UnitSection(const FittedModel& model) {
   if (!by_setting) header.push_back(">kg");
   header.insert(header.end(), {"parameter", ">value", ">std error", "95 % interval", "unit"});
   TextTable pooled(header);
-  std::map<std::string, std::pair<Chart, TextTable>> by_parameter;
   const auto add = [&](const std::vector<std::string>& unit,
                        const std::map<std::string, Estimate>& estimates) {
     for (const auto& [name, e] : estimates) {
@@ -409,20 +364,6 @@ ReportSection UnitSection(const FittedModel& model) {
       cells.insert(cells.end(), {name, Rounded(e.value, 4), Rounded(e.standard_error, 3),
                                  IntervalText(e.value, e.lower95, e.upper95), e.unit});
       if (cells.size() == header.size()) pooled.Add(cells);
-      auto& [chart, numbers] =
-          by_parameter
-              .try_emplace(name, Chart(),
-                           TextTable({"unit", "value", "lower95", "upper95", "shared"}))
-              .first->second;
-      const double shared = fit.parameters[fit.options.table.Find(name)->id];
-      const double row = static_cast<double>(chart.y_categories.size());
-      const Interval shown = Shown(e.value, {e.standard_error, e.lower95, e.upper95});
-      chart.title = WithUnit(name, e.unit);
-      chart.marks = {shared};
-      chart.y_categories.push_back(unit[0]);
-      chart.lines.push_back({{{shown.lower, row}, {shown.upper, row}}, kIntervalLook});
-      chart.lines.push_back({{{e.value, row}}, kMeasuredLook, true});
-      numbers.Add({unit[0], e.value, shown.lower, shown.upper, shared});
     }
   };
   for (const auto& [id, subject] : fit.subjects) {
@@ -436,14 +377,6 @@ ReportSection UnitSection(const FittedModel& model) {
   if (may_lack) {
     section.paragraphs.back() += " A recording without a " + by + " is grouped by its setting.";
   }
-  for (const auto& [name, drawn] : by_parameter) {
-    section.figures.push_back(
-        {"units_" + name,
-         name + " by " + by +
-             ": values (dots), 95 % intervals, and the shared value (upright line).",
-         {{}, {drawn.first}},
-         drawn.second});
-  }
   section.Show("", pooled);
   section.Show("", SpreadTable(fit));
   return section;
@@ -456,32 +389,6 @@ ReportSection ContrastSection(const FittedModel& model) {
   section.title = "By " + contrast.label + ": " + contrast.second + " less " + contrast.first;
   section.Say(ContrastText(model.fit));
   section.Show("", ContrastTable(contrast));
-  // Rows have scales of their own with zero in the middle: units differ, signs do not.
-  Figure forest;
-  forest.legend = {{"95 %", kIntervalLook}, {"differs after Holm's correction", kToldLook}};
-  TextTable numbers({"parameter", "unit", "first", "second", "difference", "lower95", "upper95",
-                     "effect_sd", "p", "p_holm"});
-  for (const ContrastRow& row : contrast.rows) {
-    double reach = std::abs(row.difference);
-    for (double end : {row.lower95, row.upper95}) {
-      if (std::isfinite(end)) reach = std::max(reach, std::abs(end));
-    }
-    reach = reach > 0.0 ? 1.08 * reach : 1.0;
-    const char* const look = row.p_holm < kContrastLevel ? kToldLook : kIntervalLook;
-    Chart& strip = forest.panels.emplace_back(IntervalStrip(
-        {row.name, row.unit, row.difference, 0.0, {{{0.0, row.lower95, row.upper95}, look}}}));
-    strip.y_label = "Holm's p " + Rounded(row.p_holm, 2);
-    strip.x_from = -reach;
-    strip.x_to = reach;
-    numbers.Add({row.name, row.unit, row.first, row.second, row.difference, row.lower95,
-                 row.upper95, row.effect ? TableCell(*row.effect) : TableCell(""), row.p,
-                 row.p_holm});
-  }
-  section.figures.push_back(
-      {"contrast",
-       "Differences (dots) with their 95 % intervals. Every row has its own "
-       "scale around zero (upright line); an open interval extends to the edge.",
-       forest, numbers});
   return section;
 }
 
@@ -514,18 +421,33 @@ ReportSection IdentifiabilitySection(const FittedModel& model) {
   section.Say(correlated.empty()
                   ? ""
                   : "correlations beyond 0.9 (the data separate these poorly):\n" + correlated);
-  section.figures.push_back(CorrelationFigure(model.fit));
   return section;
 }
 
 ReportSection ProfileSection(const FittedModel& model) {
-  ReportSection section{"profiles", "Profile likelihood"};
-  if (model.profiles.empty()) return section;
-  section.paragraphs = {
-      "Each parameter is moved away from its estimate and everything else refitted; the 95 % "
-      "interval ends where the cost has risen by the threshold. A profile that stays flat means "
-      "that the data do not determine the parameter."};
+  ReportSection section{"profiles", "Profile likelihood, bootstrap, fewer frames"};
+  if (!model.profiles.empty()) {
+    section.Say(
+        "Profiles: each parameter is moved away from its estimate and everything else refitted; "
+        "the "
+        "95 % interval ends where the cost has risen by the threshold. A profile that stays flat "
+        "means that the data do not determine the parameter.");
+  }
+  if (model.bootstrap) {
+    section.Say("Bootstrap: the fit was repeated on samples drawn with replacement, " +
+                ResamplingText(*model.bootstrap) + ".");
+  }
   section.Show("", IntervalTable(model));
+  if (model.horizon_check && !model.horizon_check->refits.empty()) {
+    section.Say(
+        "Fewer frames: the fit was repeated on only so many frames of every recording, counted "
+        "from "
+        "the start of its push. A parameter with physical meaning keeps its value; one that drifts "
+        "compensates for something that the model omits.");
+    section.Say(DriftText(*model.horizon_check));
+    section.Show("", HorizonTable(*model.horizon_check));
+  }
+  if (model.profiles.empty()) return section;
   Figure figure;
   TextTable ends({"profile of", "why it ended below", "above"});
   TextTable numbers({"parameter", "unit", "value", "cost_above_best", "threshold"});
@@ -552,69 +474,6 @@ ReportSection ProfileSection(const FittedModel& model) {
       {"profiles",
        "Cost above the optimum, over the 95 % threshold (dashed); the estimate is the line.",
        figure, numbers});
-  return section;
-}
-
-ReportSection BootstrapSection(const FittedModel& model) {
-  ReportSection section{"bootstrap", "Bootstrap"};
-  if (!model.bootstrap || model.bootstrap->values.empty()) return section;
-  const Bootstrap& b = *model.bootstrap;
-  section.paragraphs = {"The fit was repeated on samples drawn with replacement, " +
-                        ResamplingText(b) + "."};
-  if (model.profiles.empty()) {
-    section.Show("", IntervalTable(model));
-  }
-  Figure figure;
-  std::vector<std::string> header;
-  for (size_t i = 0; i < b.names.size(); ++i) {
-    header.push_back(b.names[i] + " (" + b.units[i] + ")");
-    const Estimate* estimate = nullptr;
-    for (const Estimate& e : model.fit.estimates) {
-      if (e.name == b.names[i]) estimate = &e;
-    }
-    if (estimate == nullptr) continue;  // combinations are their parameter on another scale
-    std::vector<double> values;
-    for (const auto& row : b.values) values.push_back(row[i]);
-    Chart& chart =
-        figure.panels.emplace_back(Chart{b.names[i], WithUnit(b.names[i], b.units[i]), "replicas"});
-    chart.Shrink();
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    const double width = (*high - *low) / kBars;
-    std::vector<int> counts(kBars, 0);
-    for (double value : values) {
-      ++counts[width > 0.0 ? std::min(kBars - 1, static_cast<int>((value - *low) / width)) : 0];
-    }
-    ChartBand bars{{}, {}, "stroke:none;fill:#cc79a7;fill-opacity:.75"};
-    for (int k = 0; k < kBars; ++k) {
-      for (const double x : {*low + k * width, *low + (k + 1) * width}) {
-        bars.lower.emplace_back(x, 0.0);
-        bars.upper.emplace_back(x, counts[k]);
-      }
-    }
-    chart.bands = {bars};
-    chart.marks = {estimate->value};
-    chart.y_from = 0.0;
-  }
-  TextTable numbers(header);
-  for (const auto& row : b.values) {
-    std::vector<std::string> cells;
-    for (double value : row) cells.push_back(DoubleText(value));
-    numbers.Add(cells);
-  }
-  section.figures.push_back(
-      {"bootstrap", "Replicas, and the estimate of the fit (line).", figure, numbers});
-  return section;
-}
-
-ReportSection HorizonCheckSection(const FittedModel& model) {
-  ReportSection section{"horizon_check", "Estimates from fewer frames"};
-  if (!model.horizon_check || model.horizon_check->refits.empty()) return section;
-  section.paragraphs = {
-      "The fit was repeated on only so many frames of every recording, counted from the start of "
-      "its push. A parameter with physical meaning keeps its value; one that drifts compensates "
-      "for something that the model omits.",
-      DriftText(*model.horizon_check)};
-  section.Show("", HorizonTable(*model.horizon_check));
   return section;
 }
 

@@ -11,14 +11,10 @@ ReportSection ParameterSection(const FittedModel& model);
 ReportSection ContrastSection(const FittedModel& model);  // "By group: patients less controls"
 ReportSection UnitSection(const FittedModel& model);      // "By subject"
 ReportSection IdentifiabilitySection(const FittedModel& model);
+// Intervals by profiles and by a bootstrap, and the estimates from fewer frames (pushid-check).
 ReportSection ProfileSection(const FittedModel& model);
-ReportSection BootstrapSection(const FittedModel& model);
-ReportSection HorizonCheckSection(const FittedModel& model);
 
 // The values of the free parameters with all their intervals; known: only of those identified.
 ReportFigure IntervalFigure(const FittedModel& model, bool known);
-
-// Width of a table of colours that fills the page, pixels.
-inline constexpr double kWidestMap = 1000;
 
 }  // namespace pushid

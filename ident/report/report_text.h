@@ -1,4 +1,6 @@
-// ident: a fit's result in words, and the screen that a terminal shows first.
+// ident: a fit's result in words and tables, of which the report and the screen that a terminal
+// shows first are made. Functions are pure; a text is empty, and a table only a header, where there
+// is nothing to say.
 #pragma once
 
 #include <map>
@@ -6,13 +8,42 @@
 #include <string>
 
 #include "datasets/files/error.h"
-#include "ident/figures/screen.h"
 #include "ident/figures/text_table.h"
 #include "ident/model/fitted_model.h"
 #include "ident/model/identified_model.h"
-#include "ident/report/estimate_tables.h"
 
 namespace pushid {
+
+// The end of a 95 % interval as it is shown: infinite where it tells nothing (of a positive value a
+// factor of more than 100 away, or with an interval over four orders of magnitude).
+double ShownEnd(double value, double end, double other_end);
+// "[20, 42]", "[20, open]"; "undetermined" where both ends are open.
+std::string IntervalText(double value, double lower, double upper, int digits = 4);
+
+// Values of the free parameters and the intervals that decide; of many, those first that the
+// recordings tell something of.
+TextTable ShortTable(const FitResult& result);
+// "Ankle stiffness 1.6 times m g l (1 is just enough to hold a pendulum upright), ..."
+std::string GainsText(const FitResult& result);
+// Why the fitted person does not come to rest; empty of one who does.
+std::string BalanceText(const FitResult& result);
+// The behaviour after a push, in words and settling simulation by settling simulation.
+std::string BehaviourText(const FitResult& result);
+TextTable BehaviourTable(const FitResult& result);
+
+inline constexpr double kHolmLevel = 0.05;
+// The difference between two values of a label; below it who is compared with whom, whether effects
+// are in standard deviations, and Holm's correction.
+TextTable ContrastTable(const Contrast& contrast);
+std::string ContrastText(const FitResult& result);
+
+// The identified loop of the quoted person (problem/linear_loop.h), a row for each plane, one for
+// both where they are alike: stiffness over m g l, damping ratio and frequency of the slowest
+// oscillation, phase and delay margin, factors between which the gains may change. Feet that slide
+// have none.
+TextTable LoopTable(const FitResult& result);
+// The delay that the residuals ask for and the model leaves out.
+std::string LagText(const FitResult& result);
 
 // Recordings that standing still predicts better, and the verdict on the model; brief: without the
 // numbers of its tests, and with its first finding alone.
@@ -24,13 +55,6 @@ Screen ScreenOf(const FittedModel& model);
 
 // The learned terms: "rod ldp:2 (29 weights, prior 1)"; empty where nothing is learned.
 std::string NetworkText(const FitResult& result);
-
-// -2 log likelihood, AIC, BIC and what they may be compared with; result.likelihood must be there.
-std::string LikelihoodText(const FitResult& result);
-
-// "motion: low-pass at 6 Hz (zero-phase Butterworth), resampled to 60 frames per second", and on a
-// line of its own whether this is a bootstrap's replica; from the flags that a result keeps.
-std::string PreparationText(const std::map<std::string, std::string>& configuration);
 
 // The true parameters, by name, that a manifest of pushid-simulate holds under `synthetic`.
 // Errors: unreadable, or a manifest of real recordings.

@@ -5,7 +5,6 @@
 #include <map>
 #include <set>
 
-#include "datasets/files/input_file.h"
 #include "datasets/loading/generator_data.h"
 #include "ident/generators/generator_files.h"
 #include "ident/problem/parallel.h"
@@ -15,48 +14,18 @@ namespace {
 
 constexpr double kRidgePenalty = 1e-2;  // m^2
 
-// The key of one seed's training: its data and its options.
-std::string KeyOf(const GeneratorSamples& samples, const GeneratorTrainingOptions& options,
-                  const std::string& network, const TrainerOptions& of_seed) {
-  ContentHash hash;
-  hash.Add(options.configuration);
-  for (const auto* motions : {&samples.learnt, &samples.held}) {
-    for (const LearntParticles& motion : *motions) {
-      hash.Add(std::to_string(motion.group) + " " + std::to_string(motion.motion.cols()));
-      AddTo(&hash, motion.motion);
-    }
-  }
-  for (const auto* groups : {&samples.groups, &samples.held_groups}) {
-    for (const ObservedGroup& group : *groups) {
-      hash.Add(std::to_string(group.size()));
-      for (const ObservedMotion& person : group) {
-        AddTo(&hash, person.frames);
-        AddTo(&hash, person.controls);
-        AddTo(&hash, Eigen::Vector3f(person.place.x(), person.place.y(), person.mass));
-      }
-    }
-  }
-  return network + " " + std::to_string(of_seed.seed) + " " + hash.Hex();
-}
-
-std::string SeedsCheckpoint(const std::string& path, int index) {
-  return path.empty() ? "" : path + "." + std::to_string(index + 1);
-}
-
 // Networks of so many seeds; data: what their trainer learns from.
 template <typename OfKind, typename Options, typename Network, typename... Data>
-MaybeError TrainSeeds(const char* name, const Options& of_kind, int seeds,
-                      const GeneratorSamples& samples, const GeneratorTrainingOptions& options,
-                      const SeedRunner& run, std::vector<Network>* members, const Data&... data) {
+void TrainSeeds(const Options& of_kind, int seeds, const GeneratorTrainingOptions& options,
+                const SeedRunner& run, std::vector<Network>* members, const Data&... data) {
   for (int index = 0; index < seeds; ++index) {
     Options of_seed = of_kind;
     of_seed.seed = options.seed + static_cast<uint64_t>(index);
     of_seed.num_threads = options.num_threads;
     const auto trainer = OfKind::Make(data..., of_seed);
-    if (MaybeError error = run(trainer.get(), KeyOf(samples, options, name, of_seed))) return error;
+    run(trainer.get());
     members->push_back(trainer->Network());
   }
-  return std::nullopt;
 }
 
 std::vector<ObservedGroup> ObservedGroups(const std::vector<BodyRecording>& recordings,
@@ -81,15 +50,12 @@ Result<SharedNetworks> TrainParticles(const GeneratorSamples& samples,
   const auto particles = std::make_shared<TrainedParticles>();
   particles->jitter = options.particles.jitter;
   particles->simlpe_share = options.simlpe_share;
-  MaybeError error = TrainSeeds<ParticleTrainer>(
-      "particles", options.particles, options.seeds, samples, options, run, &particles->members,
-      samples.settings.layout, samples.learnt, samples.held);
-  if (!error && options.simlpe_share > 0.0) {
-    error = TrainSeeds<SimlpeTrainer>("simlpe", options.simlpe, 1, samples, options, run,
-                                      &particles->partners.simlpe, samples.settings.layout,
-                                      samples.learnt, samples.held);
+  TrainSeeds<ParticleTrainer>(options.particles, options.seeds, options, run, &particles->members,
+                              samples.settings.layout, samples.learnt, samples.held);
+  if (options.simlpe_share > 0.0) {
+    TrainSeeds<SimlpeTrainer>(options.simlpe, 1, options, run, &particles->partners.simlpe,
+                              samples.settings.layout, samples.learnt, samples.held);
   }
-  if (error) return *error;
   if (options.ridge_share > 0.0) {
     RidgeFit fit;
     for (const Trajectories& motion : samples.ridge) {
@@ -108,11 +74,8 @@ Result<SharedNetworks> TrainDiffusion(const GeneratorSamples& samples,
     return Error{"there is nothing to train on: diffusion is trained on recordings of pushes"};
   }
   const auto diffusion = std::make_shared<TrainedDiffusion>();
-  if (MaybeError error = TrainSeeds<DiffusionTrainer>("diffusion", options.diffusion, options.seeds,
-                                                      samples, options, run, &diffusion->members,
-                                                      samples.groups, samples.held_groups)) {
-    return *error;
-  }
+  TrainSeeds<DiffusionTrainer>(options.diffusion, options.seeds, options, run, &diffusion->members,
+                               samples.groups, samples.held_groups);
   return SharedNetworks(diffusion);
 }
 
@@ -123,22 +86,18 @@ Result<TrainedGenerator> TrainGenerator(const GeneratorSamples& samples,
   const bool has_partner = options.kind == GeneratorKind::kParticles && options.simlpe_share > 0.0;
   const int networks_in_all = options.seeds + (has_partner ? 1 : 0);
   int index = 0;
-  const SeedRunner run = [&](Trainer* trainer, const std::string& key) {
-    const auto told = [&](TrainingPoint* point) {
+  const SeedRunner run = [&](Trainer* trainer) {
+    const auto curve = RunToEnd(trainer, [&](TrainingPoint* point) {
       point->stage = "network " + std::to_string(index + 1) + ", " + point->stage;
       if (progress) progress(*point, (index + trainer->ShareDone()) / networks_in_all);
-    };
-    const CheckpointOptions checkpoint = {SeedsCheckpoint(options.checkpoint, index),
-                                          index + 1 < networks_in_all};
-    const MaybeError error = RunToEnd(trainer, key, checkpoint, told, &trained);
+    });
+    trained.curve.insert(trained.curve.end(), curve.begin(), curve.end());
     ++index;
-    return error;
   };
   GeneratorTrainer* train = kGeneratorTrainers[static_cast<size_t>(options.kind)];
   Result<SharedNetworks> networks = train(samples, options, run);
   if (!networks.ok()) return networks.error();
   trained.networks = {samples.settings, std::move(networks.value())};
-  for (int i = 0; i < index; ++i) RemoveCheckpoint(SeedsCheckpoint(options.checkpoint, i));
   return trained;
 }
 

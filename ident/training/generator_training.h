@@ -1,5 +1,5 @@
 // ident: training of generators: several seeds, one after the other, and the linear forecast beside
-// them, with checkpoints. Needs LibTorch (behind models/).
+// them. Needs LibTorch (behind models/).
 #pragma once
 
 #include <optional>
@@ -15,12 +15,15 @@
 namespace pushid {
 
 // TrainerOptions::seed is the first network's.
-struct GeneratorTrainingOptions : TrainerOptions, CheckpointOptions, KindTrainingOptions {
+struct GeneratorTrainingOptions : TrainerOptions {
   GeneratorKind kind = GeneratorKind::kParticles;
-  std::string configuration;  // what a checkpoint must have been made with, beside the data
+  // Options of every seed's training, by kind; siMLPe stands beside particles.
+  ParticleTrainingOptions particles;
+  DiffusionTrainingOptions diffusion;
+  SimlpeTrainingOptions simlpe;
   int seeds = RowOf(GeneratorKind::kParticles).seeds;  // networks that are averaged
-  // For particles: a correction of the whole forecast (models/generators/particle_generator.h), and
-  // shares of the blend that they are part of.
+  // Options of particles: a correction of the whole forecast
+  // (models/generators/particle_generator.h), and shares of the blend that they are part of.
   bool correction = true;
   double ridge_share = ParticleGeneratorOptions{}.ridge_share;
   double simlpe_share = ParticleGeneratorOptions{}.simlpe_share;
@@ -46,12 +49,12 @@ GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
 void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* options);
 
 // Stages of the curve are "network 1, drift", ...
-struct TrainedGenerator : TrainingCourse {
+struct TrainedGenerator {
   TrainedNetworks networks;
+  std::vector<TrainingPoint> curve;
 };
 
-// Errors: nothing to learn from, a checkpoint that cannot be written. A checkpoint of other data or
-// options is not used.
+// Error: nothing to learn from.
 Result<TrainedGenerator> TrainGenerator(const GeneratorSamples& samples,
                                         const GeneratorTrainingOptions& options,
                                         const TrainingProgress& progress = nullptr);

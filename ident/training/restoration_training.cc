@@ -1,16 +1,9 @@
-// ident: trainings of restorations, and what all trainings share: checkpoints and curves.
 #include "ident/training/restoration_training.h"
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "datasets/files/atomic_file.h"
-#include "datasets/files/input_file.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
-#include "ident/figures/chart.h"
 #include "ident/fit/fit.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/prediction.h"
@@ -19,137 +12,30 @@
 #include "models/restoration/window_restoration.h"
 
 namespace pushid {
-namespace {
 
-constexpr double kCheckpointSeconds = 20.0;  // between two
-
-// Goes on from the checkpoint of this key; false where there is none.
-bool Resume(const std::string& path, const std::string& key, Trainer* trainer,
-            std::vector<TrainingPoint>* curve) {
-  const Result<std::string> bytes = ReadWholeFile(path);
-  if (!bytes.ok()) return false;
-  try {
-    const auto json = nlohmann::json::from_cbor(bytes.value());
-    if (json.at("key") != key) return false;
-    std::vector<TrainingPoint> points;
-    for (const auto& p : json.at("curve")) {
-      points.push_back({p.at(0), p.at(1), p.at(2), p.at(3)});
-    }
-    const std::vector<std::uint8_t>& state = json.at("state").get_binary();
-    if (!trainer->Resume({state.begin(), state.end()})) return false;
-    *curve = std::move(points);
-    return true;
-  } catch (const nlohmann::json::exception&) {
-    return false;
-  }
-}
-
-MaybeError Save(const std::string& path, const std::string& key, const std::string& state,
-                const std::vector<TrainingPoint>& curve) {
-  nlohmann::json json = {{"key", key}, {"curve", nlohmann::json::array()}};
-  for (const TrainingPoint& p : curve) {
-    json["curve"].push_back({p.epoch, p.training_loss, p.validation_loss, p.stage});
-  }
-  json["state"] = nlohmann::json::binary({state.begin(), state.end()});
-  const std::vector<std::uint8_t> bytes = nlohmann::json::to_cbor(json);
-  return WriteFileAtomically(path, std::string(bytes.begin(), bytes.end()));
-}
-
-constexpr double kCurveWidth = 700;  // pixels
-constexpr char kTraining[] = "stroke:#2a788e", kHeldOut[] = "stroke:#d1495b";
-
-ChartLine LossLine(const std::vector<TrainingPoint>& stage, double TrainingPoint::*loss,
-                   const char* look) {
-  ChartLine line;
-  line.look = std::string("fill:none;stroke-width:2;") + look;
-  for (const TrainingPoint& p : stage) line.points.emplace_back(p.epoch, p.*loss);
-  return line;
-}
-
-// Stages have names where the training loss and the held-out one (m) have different units, and a
-// panel each.
-void AddPanels(const std::vector<TrainingPoint>& stage, std::vector<Chart>* panels) {
-  const ChartLine training = LossLine(stage, &TrainingPoint::training_loss, kTraining);
-  const auto best = std::min_element(stage.begin(), stage.end(), [](const auto& a, const auto& b) {
-    return a.validation_loss < b.validation_loss;
-  });
-  Chart chart{stage.front().stage, "epoch"};
-  chart.y_from = 0.0;
-  if (!chart.title.empty()) {
-    panels->push_back(chart);
-    panels->back().lines = {training};
-    chart.y_label = "m";
-  } else {
-    chart.lines = {training};
-  }
-  chart.x_label +=
-      ", best " + Rounded(best->validation_loss, 3) + " at " + std::to_string(best->epoch);
-  chart.lines.push_back(LossLine(stage, &TrainingPoint::validation_loss, kHeldOut));
-  chart.marks = {static_cast<double>(best->epoch)};
-  panels->push_back(chart);
-}
-
-}  // namespace
-
-MaybeError RunToEnd(Trainer* trainer, const std::string& key, const CheckpointOptions& options,
-                    const std::function<void(TrainingPoint* point)>& told, TrainingCourse* course) {
-  double last = Now() - kCheckpointSeconds;  // the first is due at once
+std::vector<TrainingPoint> RunToEnd(Trainer* trainer,
+                                    const std::function<void(TrainingPoint* point)>& told) {
   std::vector<TrainingPoint> curve;
-  if (!options.checkpoint.empty()) {
-    course->resumed |= Resume(options.checkpoint, key, trainer, &curve);
-  }
   while (!trainer->Done()) {
     curve.push_back(trainer->RunRound());
     told(&curve.back());
-    const bool due = trainer->Done() ? options.keep_finished : Now() - last >= kCheckpointSeconds;
-    if (options.checkpoint.empty() || !due) continue;
-    last = Now();
-    if (MaybeError error = Save(options.checkpoint, key, trainer->State(), curve)) return error;
   }
-  course->curve.insert(course->curve.end(), curve.begin(), curve.end());
-  return std::nullopt;
+  return curve;
 }
 
-void RemoveCheckpoint(const std::string& file) {
-  std::error_code ignored;
-  if (!file.empty()) std::filesystem::remove(file, ignored);
-}
-
-std::string TrainingCurveSvg(const std::vector<TrainingPoint>& curve, const std::string& title) {
-  Figure figure{{{"training", kTraining}, {"held-out recordings", kHeldOut}}, {}, title};
-  for (size_t from = 0, to = 0; from < curve.size(); from = to) {
-    while (to < curve.size() && curve[to].stage == curve[from].stage) ++to;
-    AddPanels({curve.begin() + static_cast<std::ptrdiff_t>(from),
-               curve.begin() + static_cast<std::ptrdiff_t>(to)},
-              &figure.panels);
+nlohmann::ordered_json CurveJson(const std::vector<TrainingPoint>& curve) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const TrainingPoint& p : curve) {
+    nlohmann::ordered_json point = {{"epoch", p.epoch},
+                                    {"training_loss", p.training_loss},
+                                    {"held_out_loss", p.validation_loss}};
+    if (!p.stage.empty()) point["stage"] = p.stage;
+    json.push_back(point);
   }
-  return DrawFigure(figure, kCurveWidth, title).ToString();
+  return json;
 }
 
 namespace {
-
-// The key of a training: its samples and its options.
-std::string KeyOf(const std::vector<RestorationSample>& training,
-                  const std::vector<RestorationSample>& held,
-                  const RestorationTrainingOptions& options) {
-  ContentHash hash;
-  for (const auto* samples : {&training, &held}) {
-    for (const RestorationSample& sample : *samples) {
-      const RestorationInput& person = sample.person();
-      AddTo(&hash, person.first_pose);
-      for (const auto& q : person.q) AddTo(&hash, q);
-      for (const auto& lengths : person.lengths) AddTo(&hash, lengths);
-      AddTo(&hash, person.push.velocity);
-      AddTo(&hash, person.push.place);
-      for (const Pose& pose : sample.motion) AddTo(&hash, pose);
-    }
-  }
-  return Joined({"3", NameOf(options.kind), NameOf(options.coordinates), NameOf(options.view),
-                 options.halves ? "halves" : "whole", NameOf(options.training),
-                 std::to_string(options.effort), std::to_string(options.seed),
-                 std::to_string(training.size()), hash.Hex()},
-                " ");
-}
 
 // `epochs` times the options' effort.
 int EpochsOf(int epochs, const RestorationTrainingOptions& options) {
@@ -214,7 +100,7 @@ void Scale(std::vector<CvaeSequence>* sequences, CvaeWeights* scalings) {
   scale(&scalings->pendulum, [](CvaeSequence& s) -> Eigen::MatrixXf& { return s.pendulum; });
 }
 
-// Beside the two halves' autoencoders in LDP's release; the paper's Table 3 has totals only.
+// Sizes beside those of the autoencoders in LDP's release; the paper's Table 3 has totals only.
 std::vector<NetworkSize> SizesOf(const CvaeTrainer& trainer, const CvaeLayout& layout) {
   constexpr int64_t kReleased[4] = {865536, 0, 1097904, 0};
   const std::array<int64_t, 4> parameters = trainer.NumParameters();
@@ -425,11 +311,7 @@ Result<TrainedRestoration> TrainOn(const std::vector<BodyRecording>& recordings,
         point->stage + (point->stage.empty() ? "" : ", ") + "epoch " + std::to_string(point->epoch),
         trainer->ShareDone());
   };
-  if (MaybeError error =
-          RunToEnd(trainer, KeyOf(training, held, of_kind), of_kind, told, &trained)) {
-    return *error;
-  }
-  RemoveCheckpoint(of_kind.checkpoint);
+  trained.curve = RunToEnd(trainer, told);
   trained.content.kind = NameOf(of_kind.kind);
   prepared.finish(&trained.content);
   return trained;
@@ -489,15 +371,13 @@ Result<BodyValidation> CrossValidateChain(const std::vector<BodyRecording>& reco
                                           const RestorationRunOptions& options,
                                           const FoldChoice& choice, const RunProgress& progress) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
-  RestorationRunOptions of_fold = options;
-  of_fold.training.checkpoint.clear();  // one would be of one training, not of the whole
   const FoldTrainer train = [&](const std::vector<int>& among, const RunProgress& told,
                                 double* seconds) -> Result<FoldScorer> {
     const double before = Now();
-    Result<FittedFolds> pendulum = FitPendulum(pendulums, among, of_fold, told);
+    Result<FittedFolds> pendulum = FitPendulum(pendulums, among, options, told);
     if (!pendulum.ok()) return pendulum.error();
     Result<TrainedRestoration> trained =
-        TrainOn(recordings, pendulums, among, pendulum.value().predictions, of_fold, told);
+        TrainOn(recordings, pendulums, among, pendulum.value().predictions, options, told);
     if (!trained.ok()) return trained.error();
     *seconds = Now() - before;
     const auto model = std::make_shared<const IdentifiedModel>(std::move(pendulum.value().model));

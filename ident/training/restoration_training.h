@@ -1,17 +1,15 @@
-// ident: training of restorations, from recordings on, and its cross-validation. First what all
-// trainings share: a run to its end, its state in a file, which is good for the very same training
-// alone, and its course as JSON and as a picture.
+// ident: training of restorations, from recordings on, and its cross-validation; and what all
+// trainings share. Needs LibTorch (behind models/).
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/files/input_file.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/bodies/restoration_files.h"
@@ -22,54 +20,15 @@
 
 namespace pushid {
 
-struct CheckpointOptions {
-  std::string checkpoint;      // file; empty: none
-  bool keep_finished = false;  // one more at the end: where further trainings follow
-};
-
-// The course of a training.
-struct TrainingCourse {
-  std::vector<TrainingPoint> curve;
-  bool resumed = false;
-};
-
-// Until the trainer is done, from a checkpoint of this key on if there is one; the last stays until
-// it is removed. A finished training needs none, so that one that cannot be written does not lose
-// its result. key: of everything that the training depends on, data included. told: about every new
-// point, whose stage it may name. The points are added to the course. Errors: a checkpoint that
-// cannot be written.
-MaybeError RunToEnd(Trainer* trainer, const std::string& key, const CheckpointOptions& options,
-                    const std::function<void(TrainingPoint* point)>& told, TrainingCourse* course);
-
-void RemoveCheckpoint(const std::string& file);
-
-// Numbers for the key of a training.
-template <typename Numbers>
-void AddTo(ContentHash* hash, const Numbers& values) {
-  hash->Add({reinterpret_cast<const char*>(values.data()),
-             static_cast<size_t>(values.size()) * sizeof(*values.data())});
-}
+// Runs the trainer to its end; the points of its curve. told: about every new point, whose stage it
+// may name.
+std::vector<TrainingPoint> RunToEnd(Trainer* trainer,
+                                    const std::function<void(TrainingPoint* point)>& told);
 
 // The curve in the file of what was trained.
-inline nlohmann::ordered_json CurveJson(const std::vector<TrainingPoint>& curve) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const TrainingPoint& p : curve) {
-    nlohmann::ordered_json point = {{"epoch", p.epoch},
-                                    {"training_loss", p.training_loss},
-                                    {"held_out_loss", p.validation_loss}};
-    if (!p.stage.empty()) point["stage"] = p.stage;
-    json.push_back(point);
-  }
-  return json;
-}
+nlohmann::ordered_json CurveJson(const std::vector<TrainingPoint>& curve);
 
-// Loss against epoch, training and held-out; stages one after the other.
-std::string TrainingCurveSvg(const std::vector<TrainingPoint>& curve, const std::string& title);
-
-// Training of restorations: what they learn from, and the kinds' trainings, with
-// checkpoints. Needs LibTorch (behind models/).
-//
-// They learn from recorded bodies with their true pendulums and with pendulums that a model
+// Restorations learn from recorded bodies with their true pendulums and with pendulums that a model
 // predicts without having seen the recording. A network in use gets predicted pendulums, which have
 // errors; so it is trained on both. The predictions are out of fold: a model fitted to the very
 // recording would err too little.
@@ -102,7 +61,7 @@ struct RestorationSample {
 void SplitHeldOut(const std::vector<PendulumRecording>& recordings, const std::vector<int>& among,
                   double share, uint64_t seed, std::vector<int>* training, std::vector<int>* held);
 
-struct RestorationTrainingOptions : TrainerOptions, CheckpointOptions {
+struct RestorationTrainingOptions : TrainerOptions {
   RestorationKind kind = RestorationKind::kWindow;
   RestorationView view = RestorationView::kPendulum;    // of kWindow and kCvae
   CvaeCoordinates coordinates = CvaeCoordinates::kTip;  // of kCvae
@@ -117,7 +76,8 @@ struct NetworkSize {
   int64_t parameters = 0, released = 0;
 };
 
-struct TrainedRestoration : TrainingCourse {
+struct TrainedRestoration {
+  std::vector<TrainingPoint> curve;
   TensorFolder content;
   std::vector<NetworkSize> sizes;
 };

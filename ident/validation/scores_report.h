@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "ident/figures/screen.h"
 #include "ident/figures/text_table.h"
 #include "ident/validation/crossvalidation.h"
 

@@ -70,7 +70,7 @@ bool IsPushed(const ObservedMotion& person) {
   return person.controls.size() > 0 && (person.controls.array() != 0.0f).any();
 }
 
-// Where the push comes from: the pushed people's place, or the middle where nobody is pushed.
+// The place that the push comes from: the pushed people's, or the middle where nobody is pushed.
 Eigen::Vector2f Source(const std::vector<ObservedMotion>& group) {
   Eigen::Vector2f pushed = Eigen::Vector2f::Zero(), all = pushed;
   int count = 0;
@@ -154,7 +154,7 @@ Pose PoseOf(const Trajectories& frames, Eigen::Index t) {
   return frames.col(t).cast<double>().reshaped(3, kBodyJoints);
 }
 
-// From frame `first` on, steps fade to 1/e in so many frames.
+// Steps fade to 1/e in so many frames, from frame `first` on.
 void Settle(int first, double frames, Trajectories* motion) {
   const Trajectories before = *motion;
   for (Eigen::Index t = first; t < motion->cols(); ++t) {

@@ -134,8 +134,8 @@ constexpr EnumNames<SocialPooling, 4> Names(SocialPooling) {
            {"heads", SocialPooling::kHeads}}};
 }
 
-// Where people see each other: in the middle and on the whole way up, or in the middle alone, as
-// SDM has it.
+// The levels at which people see each other: in the middle and on the whole way up, or in the
+// middle alone, as SDM has it.
 enum class SocialJoin { kLevels, kBottleneck };
 constexpr EnumNames<SocialJoin, 2> Names(SocialJoin) {
   return {{{"levels", SocialJoin::kLevels}, {"bottleneck", SocialJoin::kBottleneck}}};

@@ -54,7 +54,7 @@ class MappedRows : public torch::autograd::Function<MappedRows> {
 
 Tensor Mapped(const Tensor& x, const RowMapPointer& map) { return MappedRows::apply(x, map); }
 
-// Where rows of a level come from. Level l has every 2^l-th frame.
+// Sources of the rows of a level. Level l has every 2^l-th frame.
 struct LevelMaps {
   RowMapPointer taps;  // the three frames that a convolution sees, one after the other; from the
                        // level above, with twice the frames
@@ -511,13 +511,6 @@ struct DiffusionTraining : StepsTraining<DiffusionTrainer> {
   std::shared_ptr<DiffusionModule> module, mean;  // mean: of the weights
   std::unique_ptr<AdamW> optimizer;
 
-  void Keep(StateArchive* state) override {
-    state->Part("module", module.get());
-    state->Part("mean", mean.get());
-    state->Part("optimizer", optimizer.get());
-    state->Numbers("step", &step);
-  }
-
   // times: of the groups, whose people are at the same stage of the way back.
   Tensor EstimateBy(DiffusionModule* of, const Tensor& noisy, const std::vector<double>& times,
                     const DiffusionBatch& batch) const {
@@ -568,9 +561,9 @@ struct DiffusionTraining : StepsTraining<DiffusionTrainer> {
     const Tensor noisy = Noised(batch.truth, Shares(times, batch), torch::randn_like(batch.truth));
     module->train();
     const Tensor loss = Loss(EstimateBy(module.get(), noisy, times, batch), batch);
-    SetLearningRate(optimizer.get(),
-                    options.learning_rate * RateShareToFloor(step, options.steps, options.warm_up));
-    Improve(optimizer.get(), loss, module->parameters(), options.clip);
+    Improve(optimizer.get(),
+            options.learning_rate * RateShareToFloor(step, options.steps, options.warm_up), loss,
+            module->parameters(), options.clip);
     Average();
     return loss.item<double>();
   }
@@ -584,7 +577,7 @@ struct DiffusionTraining : StepsTraining<DiffusionTrainer> {
     for (size_t i = 0; i < now.size(); ++i) means[i].mul_(keep).add_(now[i], 1.0 - keep);
   }
 
-  // From nothing but noise, the first frame and the push.
+  // The loss of an estimate from nothing but noise, the first frame and the push.
   double HeldLoss(int) override {
     if (held_batches.empty()) return std::nan("");
     torch::NoGradGuard no_grad;

@@ -18,7 +18,7 @@ namespace pushid {
 // is told of the pose is jittered, one draw a window and coordinate: poses are few, and
 // displacements say more. Adam, a warm-up, the rate down to nothing by a cosine, gradients clipped.
 
-// In SDE Eq. 6 trains drift and noise, f and g, together on the observed displacements. `together`
+// SDE's Eq. 6 trains drift and noise, f and g, together on the observed displacements. `together`
 // does that, in every step beside the losses of the forecast. One draw w_1:K serves both: Eq. 6 has
 // it of frames 2 .. K, and g maps it into what the forecast is given (noisy_input of
 // ParticleStructure), so that the losses of the forecast reach g as well.

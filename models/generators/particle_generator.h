@@ -88,7 +88,7 @@ struct ParticleNetwork {
   int num_coordinates() const { return static_cast<int>(pose_mean.size()); }
 };
 
-// Where many people, or many futures of one, stand after the same number of frames.
+// Many people, or many futures of one, after the same number of frames.
 class ParticleRollout {
  public:
   // All people must have the same number of frames. Each stands `copies` times side by side.

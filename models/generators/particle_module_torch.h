@@ -113,7 +113,7 @@ class ParticleModule : public torch::nn::Module {
     return torch::stack(poses, 1) + correction;
   }
 
-  // On the true motion: what the drift misses, e = p_{t+1} - f, and the hidden states, for t from
+  // What the drift misses on the true motion, e = p_{t+1} - f, and the hidden states, for t from
   // `first` - 1 on. drift_learns: off: no gradients reach the drift and the cell.
   std::pair<Tensor, Tensor> Misses(const Tensor& batch, const Tensor& jitter, int first,
                                    bool drift_learns = false) const {

@@ -169,17 +169,6 @@ struct ParticleTraining : WindowsTraining<ParticleTrainer, ParticleTrainingOptio
     critics = Adam(critic->parameters());
   }
 
-  void Keep(StateArchive* state) override {
-    state->Part("module", module.get());
-    state->Part("drift", drift.get());
-    state->Part("noise", noise.get());
-    if (critic) {
-      state->Part("critic", critic.get());
-      state->Part("critics", critics.get());
-    }
-    state->Numbers("step", &step);
-  }
-
   int AllSteps() const override {
     return options.steps + (options.together ? 0 : options.noise_steps);
   }
@@ -215,12 +204,6 @@ struct ParticleTraining : WindowsTraining<ParticleTrainer, ParticleTrainingOptio
     return parameters;
   }
 
-  void ImproveAt(double rate, AdamW* optimizer, const std::vector<Tensor>& parameters,
-                 const Tensor& loss) {
-    SetLearningRate(optimizer, rate);
-    Improve(optimizer, loss, parameters, options.clip);
-  }
-
   double DriftStep() {
     const Tensor batch = windows.Draw();
     const Tensor jitter = Jitter(batch);
@@ -244,11 +227,11 @@ struct ParticleTraining : WindowsTraining<ParticleTrainer, ParticleTrainingOptio
       const Tensor made = critic->Features(forecast, last);
       const Tensor real =
           critic->Features(batch.narrow(1, options.observed, options.predicted), last);
-      ImproveAt(rate, critics.get(), critic->parameters(),
-                critic->Loss(made.detach(), real, torch::rand({real.size(0), 1})));
+      const Tensor own = critic->Loss(made.detach(), real, torch::rand({real.size(0), 1}));
+      Improve(critics.get(), rate, own, critic->parameters(), options.clip);
       loss = loss - options.critic * critic->Score(made);
     }
-    ImproveAt(rate, drift.get(), Trained(), kLossUnits * loss);
+    Improve(drift.get(), rate, kLossUnits * loss, Trained(), options.clip);
     return shown;
   }
 
@@ -257,7 +240,8 @@ struct ParticleTraining : WindowsTraining<ParticleTrainer, ParticleTrainingOptio
     const Tensor loss = NoiseLossOf(batch, Jitter(batch));
     const double share =
         RateShareToZero(step - options.steps, options.noise_steps, options.warm_up);
-    ImproveAt(options.learning_rate * share, noise.get(), module->NoiseParameters(), loss);
+    Improve(noise.get(), options.learning_rate * share, loss, module->NoiseParameters(),
+            options.clip);
     return loss.item<double>();
   }
 
@@ -366,12 +350,6 @@ struct SimlpeTraining : WindowsTraining<SimlpeTrainer, SimlpeTrainingOptions> {
         optimizer(
             MakeOptimizer(module->parameters(), options.learning_rate, options.weight_decay)) {}
 
-  void Keep(StateArchive* state) override {
-    state->Part("module", module.get());
-    state->Part("optimizer", optimizer.get());
-    state->Numbers("step", &step);
-  }
-
   int AllSteps() const override { return options.steps; }
   const char* Stage(int) const override { return "perceptron"; }
 
@@ -382,10 +360,10 @@ struct SimlpeTraining : WindowsTraining<SimlpeTrainer, SimlpeTrainingOptions> {
   }
 
   double Step() override {
-    SetLearningRate(optimizer.get(),
-                    options.learning_rate * RateShareToZero(step, options.steps, options.warm_up));
+    const double rate =
+        options.learning_rate * RateShareToZero(step, options.steps, options.warm_up);
     const Tensor loss = Loss(windows.Draw(), options.jitter);
-    Improve(optimizer.get(), kLossUnits * loss, module->parameters(), options.clip);
+    Improve(optimizer.get(), rate, kLossUnits * loss, module->parameters(), options.clip);
     return loss.item<double>();
   }
 

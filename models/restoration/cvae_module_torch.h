@@ -70,7 +70,7 @@ inline Tensor AutoencoderLossOf(const CvaeOptions& options, const Gaussian& enco
   return (output - frame).pow(2).mean() + options.kl_weight * kl;
 }
 
-// Without the foot skate.
+// The sampler's loss without the foot skate.
 inline Tensor SamplerLossOf(CvaeTraining training, const Gaussian& sampled,
                             const Gaussian& encoded) {
   const Tensor of_mean = (sampled.mean - encoded.mean).pow(2);

@@ -9,7 +9,7 @@
 namespace pushid {
 namespace {
 
-// Where positions are measured from.
+// The point that positions are measured from.
 Eigen::Vector3d OriginOf(const RestorationInput& person, const Pose& pose,
                          CvaeCoordinates coordinates) {
   return coordinates == CvaeCoordinates::kTip ? pose.col(0) : person.first_pose.col(0);

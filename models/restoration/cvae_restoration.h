@@ -52,7 +52,7 @@ struct CvaeLayout {
     return Frame(half) + (half == kUpperHalf ? Positions(kLowerHalf) : 0);
   }
   int PendulumFrame() const;  // 15 or 0
-  // Where positions are measured from: without a pendulum there is no tip.
+  // The coordinates in use: without a pendulum there is no tip.
   CvaeCoordinates Origin() const { return pendulum ? coordinates : CvaeCoordinates::kLdp; }
 };
 
@@ -144,7 +144,7 @@ class CvaeRestoration : public Restoration {
   std::string_view kind() const override { return RowOf(RestorationKind::kCvae).name; }
   std::vector<BodyMotion> Restore(const std::vector<RestorationInput>& people) const override;
   bool CanDraw() const { return weights_.layout.pendulum; }
-  // From here on z is drawn from the samplers' Gaussians (CanDraw); every call of Restore takes its
+  // Draws z from the samplers' Gaussians from here on (CanDraw); every call of Restore takes its
   // normal numbers from `draws` anew.
   void DrawLatent(std::function<NormalSource()> draws) {
     latent_ = CvaeLatent::kDraw;

@@ -7,7 +7,7 @@
 
 namespace pushid {
 
-// By tiles of 16 rows and 6 columns, whose sums stay in registers.
+// The product is made of tiles of 16 rows and 6 columns, whose sums stay in registers.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 namespace {
 
@@ -89,7 +89,7 @@ Eigen::MatrixXf Applied(const DenseLayer& layer, const Eigen::MatrixXf& values) 
 
 void ApplyElu(Eigen::MatrixXf* values) {
   auto v = values->array();
-  // Without a branch: exp is vectorized.
+  // There is no branch, so exp is vectorized.
   v = v.max(0.0f) + v.min(0.0f).exp() - 1.0f;
 }
 

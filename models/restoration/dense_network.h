@@ -24,7 +24,7 @@ struct DenseLayer {
 
 // A column per sample.
 Eigen::MatrixXf Applied(const DenseLayer& layer, const Eigen::MatrixXf& values);
-// As Applied, by Eigen's own product, which rounds otherwise.
+// Applied by Eigen's own product, which rounds otherwise.
 inline Eigen::MatrixXf AppliedByEigen(const DenseLayer& layer, const Eigen::MatrixXf& values) {
   return (layer.weights * values).colwise() + layer.bias;
 }

@@ -20,7 +20,7 @@ bool Rests(const Vector3d& ankle, const Vector3d& before, double floor, double d
 
 Vector3d Flat(const Vector3d& v) { return {v.x(), v.y(), 0.0}; }
 
-// Where one ankle is held, frame by frame.
+// The place where one ankle is held, frame by frame.
 class FootLock {
  public:
   // floor: the ankle's own height at frame 0; place, before: where it is now, and was.

@@ -80,8 +80,7 @@ struct RestorationInput {
   double push_start = 0.0;         // s, of the first push on anybody
   SeenPush push = {};
   std::vector<FootPath> feet = {};  // frame by frame; empty: the model says nothing of them
-  // Where the rod moves: its length and the cart's height at every frame of q, m; empty: as in
-  // body.
+  // Length of a rod that moves and the cart's height at every frame of q, m; empty: those of body.
   std::vector<Eigen::Vector2d> lengths = {};
   // Poses of the first frames, first_pose among them, where more than that was seen.
   std::vector<Pose> seen = {};

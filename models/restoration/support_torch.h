@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -51,15 +50,13 @@ inline double OneCycle(double done) {
   return floor + (1.0 - floor) * 0.5 * (1.0 + std::cos(M_PI * phase));
 }
 
-inline void SetLearningRate(AdamW* optimizer, double rate) {
+// One step at a learning rate. clip: the gradient's largest norm, over `parameters`; 0: it is not
+// held.
+inline void Improve(AdamW* optimizer, double rate, const Tensor& loss,
+                    const std::vector<Tensor>& parameters = {}, double clip = 0.0) {
   for (auto& group : optimizer->param_groups()) {
     static_cast<torch::optim::AdamWOptions&>(group.options()).lr(rate);
   }
-}
-
-// clip: the gradient's largest norm, over `parameters`; 0: it is not held.
-inline void Improve(AdamW* optimizer, const Tensor& loss,
-                    const std::vector<Tensor>& parameters = {}, double clip = 0.0) {
   optimizer->zero_grad();
   loss.backward();
   if (clip > 0.0) torch::nn::utils::clip_grad_norm_(parameters, clip);
@@ -81,85 +78,9 @@ inline void StartTraining(const TrainerOptions& options) {
   torch::manual_seed(options.seed);
 }
 
-// The state of a training, written or read by one list of its fields (TorchTraining::Keep). The
-// random generator belongs to every state.
-class StateArchive {
- public:
-  StateArchive() = default;  // writes
-  explicit StateArchive(const std::string& state) : reads_(true) {
-    std::istringstream stream(state);
-    in_.load_from(stream);
-  }
-  bool reads() const { return reads_; }
-
-  template <typename Kept>
-  void Part(const char* name, Kept* part) {  // a module or an optimizer
-    if (reads_) {
-      torch::serialize::InputArchive of_part;
-      in_.read(name, of_part);
-      part->load(of_part);
-    } else {
-      torch::serialize::OutputArchive of_part;
-      part->save(of_part);
-      out_.write(name, of_part);
-    }
-  }
-  void Value(const char* name, Tensor* tensor) {
-    if (reads_) return in_.read(name, *tensor);
-    out_.write(name, *tensor);
-  }
-  template <typename... Number>
-  void Numbers(const char* name, Number*... numbers) {
-    Tensor all = torch::tensor({static_cast<double>(*numbers)...}, torch::kFloat64);
-    Value(name, &all);
-    all = all.reshape({-1});
-    int64_t i = 0;
-    ((*numbers = static_cast<Number>(all[i++].item<double>())), ...);
-  }
-  void Random() {
-    auto generator = at::detail::getDefaultCPUGenerator();
-    Tensor random = generator.get_state();
-    Value("random", &random);
-    if (reads_) generator.set_state(random);
-  }
-  std::string Written() {
-    std::ostringstream stream;
-    out_.save_to(stream);
-    return stream.str();
-  }
-
- private:
-  bool reads_ = false;
-  torch::serialize::InputArchive in_;
-  torch::serialize::OutputArchive out_;
-};
-
-// A trainer in LibTorch, whose state is what it lists.
-template <typename Interface>
-struct TorchTraining : Interface {
-  virtual void Keep(StateArchive* state) = 0;
-
-  std::string State() override {
-    StateArchive state;
-    Keep(&state);
-    state.Random();
-    return state.Written();
-  }
-  bool Resume(const std::string& kept) override {
-    try {
-      StateArchive state(kept);
-      Keep(&state);
-      state.Random();
-      return true;
-    } catch (const std::exception&) {
-      return false;
-    }
-  }
-};
-
 // Training by steps, with a point of the curve for every round of them. A round is of one stage.
 template <typename Interface>
-struct StepsTraining : TorchTraining<Interface> {
+struct StepsTraining : Interface {
   int step = 0;
 
   virtual int AllSteps() const = 0;
@@ -181,7 +102,6 @@ struct StepsTraining : TorchTraining<Interface> {
   }
 };
 
-// As LibTorch's AdamW has it.
 inline std::unique_ptr<AdamW> MakeOptimizer(const std::vector<Tensor>& parameters, double rate,
                                             double weight_decay) {
   return std::make_unique<AdamW>(parameters,

@@ -5,8 +5,7 @@
 //   while (!trainer->Done()) Show(trainer->RunRound());
 //   Use(trainer->Network());
 //
-// State() and Resume() carry everything over to another process, random generator included: with
-// one thread a run that was broken off and resumed ends with the same bits.
+// With one thread a seed gives the same bits.
 #pragma once
 
 #include <array>
@@ -45,9 +44,6 @@ class Trainer {
   virtual bool Done() const = 0;
   virtual TrainingPoint RunRound() = 0;
   virtual double ShareDone() const = 0;  // after a round; 0 .. 1
-  virtual std::string State() = 0;
-  // False when the state is not one of this training.
-  virtual bool Resume(const std::string& state) = 0;
 };
 
 // A training of one kind of network, in a *_torch.cc.

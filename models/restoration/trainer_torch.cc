@@ -42,8 +42,9 @@ Tensor AbsoluteLoss(const Tensor& output, const Tensor& target, const Tensor& we
   return ((output - target).abs().mean(1) * weight).sum() / weight.sum();
 }
 
-// By epochs of batches; `best` has the weights of the epoch with the least held-out loss.
-struct RegressionTraining : TorchTraining<TrainerOf<DenseNetwork>> {
+// A training by epochs of batches; `best` has the weights of the epoch with the least held-out
+// loss.
+struct RegressionTraining : TrainerOf<DenseNetwork> {
   RegressionOptions options;
   std::shared_ptr<DenseModule> network, best;
   std::unique_ptr<AdamW> optimizer;
@@ -92,9 +93,8 @@ struct RegressionTraining : TorchTraining<TrainerOf<DenseNetwork>> {
     network->train();
     for (int64_t b = 0; b < batches; ++b) {
       const double done = (epoch + static_cast<double>(b) / batches) / options.epochs;
-      SetLearningRate(optimizer.get(), options.learning_rate * OneCycle(done));
       const Tensor loss = LossOf(order.slice(0, b * options.batch, (b + 1) * options.batch));
-      Improve(optimizer.get(), loss);
+      Improve(optimizer.get(), options.learning_rate * OneCycle(done), loss);
       sum += loss.item<double>();
     }
     ++epoch;
@@ -105,13 +105,6 @@ struct RegressionTraining : TorchTraining<TrainerOf<DenseNetwork>> {
       CopyWeights(*network, best.get());
     }
     return {epoch, sum / static_cast<double>(batches), held_loss};
-  }
-
-  void Keep(StateArchive* state) override {
-    state->Part("network", network.get());
-    state->Part("best", best.get());
-    state->Part("optimizer", optimizer.get());
-    state->Numbers("judged", &best_epoch, &best_loss, &epoch);
   }
 
   DenseNetwork Network() const override { return best->Weights(); }
@@ -150,7 +143,7 @@ struct CvaeSequences {
   int64_t longest;
 };
 
-struct CvaeStages : TorchTraining<CvaeTrainer> {
+struct CvaeStages : CvaeTrainer {
   CvaeOptions options;
   CvaeWeights scalings;
   CvaeSequences training, held;
@@ -199,9 +192,9 @@ struct CvaeStages : TorchTraining<CvaeTrainer> {
   int Steps(int which) const { return Has(which) ? options.steps[which] : 0; }
 
   void StartStage() {
-    // From here on the lower chain is finished.
+    // The lower chain is finished.
     if (stage == 2) PredictLower(&training), PredictLower(&held);
-    // Without weight decay AdamW is Adam.
+    // AdamW without weight decay is Adam.
     optimizer = MakeOptimizer(Trained(), CvaeLearningRate(options, Sampler(), 0.0),
                               Published() ? 0.0 : 1e-4);
     step = 0;
@@ -263,7 +256,6 @@ struct CvaeStages : TorchTraining<CvaeTrainer> {
   double Step() {
     if (rollout_left == 0) NewBatch();
     const double done = static_cast<double>(step) / options.steps[stage];
-    SetLearningRate(optimizer.get(), CvaeLearningRate(options, Sampler(), done));
     const auto next_of = [this](const Tensor& all) { return all.index({rows, first + at + 1}); };
     const Tensor next = next_of(training.body[half()]), pendulum = next_of(training.pendulum);
     const Tensor condition =
@@ -271,7 +263,7 @@ struct CvaeStages : TorchTraining<CvaeTrainer> {
     Tensor output;
     const Tensor loss = Sampler() ? SamplerLoss(next, condition, pendulum, &output)
                                   : AutoencoderLoss(next, condition, &output);
-    Improve(optimizer.get(), loss, Trained(), 1.0);
+    Improve(optimizer.get(), CvaeLearningRate(options, Sampler(), done), loss, Trained(), 1.0);
     const double own = std::clamp((done - kTeacher) / kRamp, 0.0, 1.0);
     const Tensor take = (torch::rand({options.batch, 1}) < own).to(torch::kFloat32);
     state = (take * output.detach() + (1.0 - take) * next).clamp(-kLargestScaled, kLargestScaled);
@@ -318,28 +310,6 @@ struct CvaeStages : TorchTraining<CvaeTrainer> {
     const int kept = std::exchange(stage, 0);  // of the lower body
     s->lower_predicted = Positions(RollOut(*s, true), layout().Positions(kLowerHalf)).contiguous();
     stage = kept;
-  }
-
-  void Keep(StateArchive* archive) override {
-    for (size_t half = 0; half < halves.size(); ++half) {
-      archive->Part(("half" + std::to_string(half)).c_str(), halves[half].get());
-      archive->Part(("best" + std::to_string(half)).c_str(), best[half].get());
-    }
-    int of_stage = stage, of_step = step;
-    double loss = best_loss;
-    int64_t column = at, left = rollout_left;
-    archive->Numbers("counts", &of_stage, &of_step, &rounds, &loss, &column, &left);
-    if (archive->reads()) {  // the stage first, with its optimizer; then how far it is
-      stage = of_stage;
-      if (stage == 3) PredictLower(&training), PredictLower(&held);
-      if (!Done()) StartStage();
-      step = of_step, best_loss = loss, at = column, rollout_left = left;
-    }
-    archive->Part("optimizer", optimizer.get());
-    if (rollout_left == 0) return;
-    archive->Value("rows", &rows);
-    archive->Value("first", &first);
-    archive->Value("state", &state);
   }
 
   bool Done() const override { return stage == kStages; }

@@ -91,7 +91,7 @@ int QuarterOf(const Eigen::Vector2d& away) {
   return away.y() > 0.0 ? 2 : 3;
 }
 
-// Where the rod's tip goes (x, y), seen along a turned path.
+// The way of the rod's tip (x, y), seen along a turned path.
 FramePath<Eigen::Vector2d> TipPath(const RestorationInput& person,
                                    const FramePath<Vector4<double>>& turned) {
   std::vector<Eigen::Vector2d> tips;

@@ -58,7 +58,7 @@ Eigen::MatrixXf WindowInputs(const std::vector<RestorationInput>& people, int n,
 Eigen::MatrixXf WindowTargets(const RestorationInput& person, const BodyMotion& motion,
                               RestorationView view);
 
-// From outputs to a motion.
+// The motion of outputs.
 BodyMotion MotionFromOutputs(const RestorationInput& person, const Eigen::MatrixXf& outputs,
                              RestorationView view);
 

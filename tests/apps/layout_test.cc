@@ -94,15 +94,14 @@ TEST_F(LayoutTest, PicturesOfAFormation) {
 
 TEST_F(LayoutTest, AnAnimationOfSeveralWhatIfs) {
   const std::string model = FitModel();
-  Succeeded(RunApp("pushid-animate", {"--model=" + model, Recordings(), "--id=" + id_,
-                                      "--set=mu=10", "--set=mu=60,a_x=-8",
-                                      "--out=" + Path("a.html"), "--svg_out=" + Path("a.svg")}));
-  for (const std::string& file : {ReadText(Path("a.html")), ReadText(Path("a.svg"))}) {
-    for (const char* entry : {"recorded", "as fitted", "mu=10", "mu=60,a_x=-8"}) {
-      EXPECT_TRUE(Contains(file, entry));
-    }
+  Succeeded(
+      RunApp("pushid-animate", {"--model=" + model, Recordings(), "--id=" + id_, "--set=mu=10",
+                                "--set=mu=60,a_x=-8", "--out=" + Path("a.html")}));
+  const std::string page = ReadText(Path("a.html"));
+  for (const char* entry : {"recorded", "as fitted", "mu=10", "mu=60,a_x=-8"}) {
+    EXPECT_TRUE(Contains(page, entry));
   }
-  ExpectGoodLayout({ReadText(Path("a.html")), PageOf(ReadText(Path("a.svg")))}, {1});
+  ExpectGoodLayout({page}, {1});
   EXPECT_TRUE(
       Refused(RunApp("pushid-animate", {"--model=" + model, Recordings(), "--id=" + id_,
                                         "--set=mu=10", "--set=mew=1", "--out=" + Path("b.html")}),
@@ -127,7 +126,6 @@ TEST_F(LayoutTest, TheMovingFigureMoves) {
   EXPECT_EQ(WhatItSaid(seen), "moves; 0.05 s, frame 3");
 }
 
-// Its moments stand in words, and lead to their frames.
 TEST_F(LayoutTest, ForcesAreToldBesideTheMotion) {
   const std::vector<std::string> flags = {"--model=" + FitModel(), Recordings(), "--id=" + id_,
                                           "--out=" + Path("a.html")};
@@ -137,13 +135,8 @@ TEST_F(LayoutTest, ForcesAreToldBesideTheMotion) {
   const AppRun run = Succeeded(RunApp("pushid-animate", told));
   EXPECT_TRUE(Contains(run.out, ": 0 s pushed, up to "));
   const std::string page = ReadText(Path("a.html"));
+  EXPECT_TRUE(Contains(page, ": 0 s pushed, up to "));
   ExpectGoodLayout({page}, {});
-  const AppRun seen = Browse(Path("browser"), WriteText("probed.html", Probed(page, R"js(
-  document.getElementById('moment1').click();
-  said.push(+document.getElementById('time').value > 0 ? 'led on' : 'stayed');
-  said.push(document.getElementById('moment1').getAttribute('aria-current'));
-)js")));
-  EXPECT_EQ(WhatItSaid(seen), "led on; true") << seen.err;
   EXPECT_TRUE(Refused(RunApp("pushid-animate", wrong), {"--explain", "'nobody'", "there are"}));
 }
 

@@ -51,8 +51,8 @@ TEST_F(ReportPage, WorksInABrowser) {
       Succeeded(Browse(Path("browser"), WriteText("probed.html", Probed(page, kProbe))));
   EXPECT_FALSE(Contains(seen.err, "CONSOLE")) << seen.err;
   for (const char* section :
-       {"summary", "parameters", "identifiability", "profiles", "bootstrap", "behaviour", "figure",
-        "motion", "recordings", "leverage", "residuals", "solve", "provenance"}) {
+       {"summary", "parameters", "identifiability", "profiles", "behaviour", "figure", "motion",
+        "recordings", "leverage", "residuals", "provenance"}) {
     EXPECT_TRUE(Contains(seen.out, "<section id=\"" + std::string(section) + "\">"));
   }
   const size_t probe = seen.out.find("<pre id=\"probe\">");
@@ -97,9 +97,8 @@ TEST_F(ReportPage, FiguresAndTablesAsFiles) {
   }
   const std::string captions = ReadText(Path("figures/captions.md"));
   for (const std::string& name :
-       {std::string("typical"), std::string("forest"), std::string("correlation"),
-        std::string("profiles"), std::string("explained"), std::string("leverage"),
-        std::string("residual_correlations"), std::string("trace"), "motion_" + id_,
+       {std::string("typical"), std::string("forest"), std::string("profiles"),
+        std::string("explained"), std::string("residual_correlations"), "motion_" + id_,
         "forces_" + id_}) {
     SCOPED_TRACE(name);
     const std::string csv = ReadText(Path("figures/" + name + ".csv"));

@@ -48,19 +48,11 @@ TEST(RegressionTrainerTest, LearnsAndReportsWhatItsWeightsDo) {
   EXPECT_NEAR(error, best, 1e-5);
 }
 
-TEST(RegressionTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
+TEST(RegressionTrainerTest, RepeatsItselfToTheLastBit) {
   const DenseNetwork one = TrainedInOneGo(), again = TrainedInOneGo();
-  const auto broken = MakeRegressionTrainer(Samples(1000, 1), Samples(200, 2), QuickRegression());
-  for (int i = 0; i < 5; ++i) broken->RunRound();
-  const std::string state = broken->State();
-  const auto resumed = MakeRegressionTrainer(Samples(1000, 1), Samples(200, 2), QuickRegression());
-  ASSERT_TRUE(resumed->Resume(state));
-  while (!resumed->Done()) resumed->RunRound();
   for (size_t i = 0; i < one.layers.size(); ++i) {
     EXPECT_EQ(one.layers[i].weights, again.layers[i].weights);
-    EXPECT_EQ(one.layers[i].weights, resumed->Network().layers[i].weights);
   }
-  EXPECT_FALSE(resumed->Resume("no state"));
 }
 
 TEST(RegressionTrainerTest, StopsEarlyWhereNothingGetsBetter) {
@@ -144,47 +136,21 @@ TEST(CvaeTrainerTest, TheChainWithoutLibTorchIsTheTrainedOne) {
   EXPECT_NEAR(error, last.validation_loss, 1e-4 * std::max(1.0, error));
 }
 
-// The published training is another one, draws in its steps, and resumes all the same.
-TEST(CvaeTrainerTest, ThePublishedTrainingKeepsSigmaAndResumes) {
+// The published training is another one, and draws in its steps.
+TEST(CvaeTrainerTest, ThePublishedTrainingKeepsSigmaAndRepeatsItself) {
   CvaeWeights scalings;
   const auto sequences = Sequences(2, &scalings);
-  CvaeOptions options = QuickCvae();
-  const auto own = CvaeTrainer::Make(sequences, sequences, scalings, options);
-  while (!own->Done()) own->RunRound();
-  options.training = CvaeTraining::kPublished;
-  const auto published = CvaeTrainer::Make(sequences, sequences, scalings, options);
-  std::string state;
-  for (int round = 0; !published->Done(); ++round) {
-    published->RunRound();
-    if (round == 3) state = published->State();  // in the lower sampler
-  }
-  const auto resumed = CvaeTrainer::Make(sequences, sequences, scalings, options);
-  ASSERT_TRUE(resumed->Resume(state));
-  while (!resumed->Done()) resumed->RunRound();
-  const auto sigma_of = [](const std::unique_ptr<CvaeTrainer>& trainer) {
+  const auto sigma_of = [&](CvaeTraining training) {
+    CvaeOptions options = QuickCvae();
+    options.training = training;
+    const auto trainer = CvaeTrainer::Make(sequences, sequences, scalings, options);
+    while (!trainer->Done()) trainer->RunRound();
     return trainer->Network().halves[kLowerHalf].sampler.log_variance.weights;
   };
-  EXPECT_EQ(sigma_of(published).rows(), kLatent);
-  EXPECT_EQ(sigma_of(published), sigma_of(resumed));
-  EXPECT_NE(sigma_of(published), sigma_of(own));
-}
-
-TEST(CvaeTrainerTest, ResumesToTheLastBitInTheMiddleOfAnyStage) {
-  CvaeWeights scalings;
-  const auto sequences = Sequences(2, &scalings);
-  const auto whole = CvaeTrainer::Make(sequences, sequences, scalings, QuickCvae());
-  while (!whole->Done()) whole->RunRound();
-  for (int rounds : {2, 4, 6, 9}) {  // 3, 2, 3 and 2 rounds a stage
-    const auto broken = CvaeTrainer::Make(sequences, sequences, scalings, QuickCvae());
-    for (int i = 0; i < rounds; ++i) broken->RunRound();
-    const std::string state = broken->State();
-    const auto resumed = CvaeTrainer::Make(sequences, sequences, scalings, QuickCvae());
-    ASSERT_TRUE(resumed->Resume(state)) << rounds;
-    while (!resumed->Done()) resumed->RunRound();
-    const TensorList a = TensorsOf(whole->Network()), b = TensorsOf(resumed->Network());
-    for (size_t i = 0; i < a.size(); ++i)
-      EXPECT_EQ(a[i].values, b[i].values) << rounds << a[i].name;
-  }
+  const Eigen::MatrixXf published = sigma_of(CvaeTraining::kPublished);
+  EXPECT_EQ(published.rows(), kLatent);
+  EXPECT_EQ(published, sigma_of(CvaeTraining::kPublished));
+  EXPECT_NE(published, sigma_of(CvaeTraining::kOwn));
 }
 
 // What a chain of another layout predicts is what its trainer returned, and its stages are those of
@@ -205,18 +171,10 @@ TEST(CvaeTrainerTest, LayoutsOfTheAblationAreTrained) {
     const auto sequences = Sequences(2, &scalings, c.layout);
     const auto trainer = CvaeTrainer::Make(sequences, sequences, scalings, QuickCvae());
     for (int i = 0; i < 4; ++i) EXPECT_EQ(trainer->NumParameters()[i] > 0, c.stages[i]) << i;
-    std::string state;
     TrainingPoint last;
-    while (!trainer->Done()) {
-      last = trainer->RunRound();
-      if (state.empty()) state = trainer->State();
-    }
+    while (!trainer->Done()) last = trainer->RunRound();
     EXPECT_EQ(last.stage, c.last);
-    const auto resumed = CvaeTrainer::Make(sequences, sequences, scalings, QuickCvae());
-    ASSERT_TRUE(resumed->Resume(state)) << c.last;
-    while (!resumed->Done()) resumed->RunRound();
-    const TensorList trained = TensorsOf(trainer->Network()), again = TensorsOf(resumed->Network());
-    for (size_t i = 0; i < trained.size(); ++i) EXPECT_EQ(trained[i].values, again[i].values);
+    const TensorList trained = TensorsOf(trainer->Network());
     TensorFields reader(trained);
     const CvaeWeights taken = TakeTensors("", CvaeWeights{c.layout, {}, {}}, &reader);
     EXPECT_EQ(reader.problem(), "");

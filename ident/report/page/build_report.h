@@ -3,7 +3,8 @@
 //   const Report report = BuildReport(model, recordings);
 //   WriteFileAtomically("report.html", ToPage(report));
 //
-// A new section is a function in one of the *_sections files and its name in build_report.cc.
+// A new section is a function, here or in one of the *_sections files, and its name in kSections of
+// build_report.cc.
 #pragma once
 
 #include <string>
@@ -45,10 +46,10 @@ struct ReportSource {
   std::vector<FrequencyResponse> frequency = {};
 };
 
-// Sections of a report that score predictions: steps, groups, frequency response.
-
-ReportSection StepSection(const ReportSource& source);
-ReportSection GroupSection(const ReportSource& source);
+// The report in a few sentences, with hips of the recordings that are predicted best, in the middle
+// and worst.
+ReportSection LeadSection(const ReportSource& source);
+// The answer to disturbances that go on, frequency by frequency.
 ReportSection FrequencySection(const ReportSource& source);
 
 }  // namespace pushid

@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-#include "ident/figures/screen.h"
+#include "ident/figures/text_table.h"
 #include "ident/fit/fit.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/report/advice.h"

@@ -1,11 +1,10 @@
 // One screen: what does not fit is counted and named, and no line is wider than a terminal.
-#include "ident/figures/screen.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <sstream>
 
+#include "ident/figures/text_table.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -66,14 +66,10 @@ TEST_F(ForecastSceneTest, ACsvHasARowPerSourceFrameAndJoint) {
 }
 
 TEST_F(ForecastSceneTest, PicturesShowTheFan) {
-  const std::string strip =
-      PoseStrip(ToAnimation(SwayingScene(), SwayingScene().num_observed() - 1), 4).ToString();
-  EXPECT_TRUE(Contains(strip, "sway &lt;1&gt;"));
-  for (const char* shown : {">recorded<", ">sampled futures<", ">forecast<"}) {
-    EXPECT_TRUE(Contains(strip, shown)) << shown;
+  const std::string page = AnimationHtml({ToAnimation(SwayingScene())});
+  for (const char* shown : {"> recorded<", "> sampled futures<", "> forecast<"}) {
+    EXPECT_TRUE(Contains(page, shown)) << shown;
   }
-  EXPECT_TRUE(Contains(strip, "0.24 s"));
-  const std::string page = AnimationHtml({ToAnimation(SwayingScene(), 0)});
   EXPECT_TRUE(Contains(page, "<title>sway &lt;1&gt;</title>"));
   EXPECT_TRUE(Contains(page, "\"frames\":18"));
   EXPECT_FALSE(Contains(page, "http")) << "the page needs no network";

@@ -4,8 +4,8 @@
 #include "datasets/files/names.h"
 #include "ident/parameters/parameter_table.h"
 #include "ident/report/document.h"
-#include "ident/report/estimate_tables.h"
-#include "ident/report/page/motion_sections.h"
+#include "ident/report/page/build_report.h"
+#include "ident/report/report_text.h"
 #include "tests/test_support.h"
 
 namespace pushid {
