@@ -72,8 +72,8 @@ TEST_F(BatchTest, ReplicasAreThoseOfTheBootstrap) {
 
 // Replicas are spread of the estimate they belong to, and no estimates of their own.
 TEST_F(BatchTest, TheSpreadOverReplicasIsOfEachGroup) {
-  const AppRun run = Succeeded(
-      Batch(Plan("group_by = \"subject\"\nbootstrap = 3", {{"a", ""}}), {"--jobs=2"}));
+  const AppRun run =
+      Succeeded(Batch(Plan("group_by = \"subject\"\nbootstrap = 3", {{"a", ""}}), {"--jobs=2"}));
   const nlohmann::ordered_json summary = Json(Path("out/summary.json"));
   std::map<std::string, std::vector<double>> mu;
   for (const auto& job : summary["jobs"]) {

@@ -1,7 +1,7 @@
-// The losses of the networks that LibTorch trains. LDP's chain: its losses by hand, and the foot-skate
-// error of the lower sampler by hand in both coordinates, as the metric has it, and its gradient in
-// three regimes. Particles: SDE's Eq. 10 and 11 worked by hand; values of Eq. 6 and 12, and the
-// gradients of Eq. 6, against the numbers of sde_numbers.py.
+// The losses of the networks that LibTorch trains. LDP's chain: its losses by hand, and the
+// foot-skate error of the lower sampler by hand in both coordinates, as the metric has it, and its
+// gradient in three regimes. Particles: SDE's Eq. 10 and 11 worked by hand; values of Eq. 6 and 12,
+// and the gradients of Eq. 6, against the numbers of sde_numbers.py.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,6 @@ namespace pushid {
 namespace {
 
 // LDP's chain.
-
 
 constexpr double kH = 0.025;
 constexpr int kRight = 3 + 3 * 3;  // the right ankle's row in a lower frame: hip, hip, knee, ankle
@@ -188,7 +187,6 @@ TEST(CvaeSkateTest, TheGradientIsThatOfDifferences) {
 }
 
 // Particles.
-
 
 constexpr int kObserved = 2, kPredicted = 3;
 

@@ -432,7 +432,8 @@ Figure BodeFigure(const FrequencyResponse& response) {
   std::optional<double> beside;
   // The multiple of 360 degrees away that is nearest to what stands beside it.
   const auto nearest = [&beside](double angle) {
-    return beside ? *beside + std::remainder(kDegreesPerRadian * angle - *beside, 360.0) : kDegreesPerRadian * angle;
+    return beside ? *beside + std::remainder(kDegreesPerRadian * angle - *beside, 360.0)
+                  : kDegreesPerRadian * angle;
   };
   for (const FrequencyBin& bin : response.bins) {
     const double x = std::log10(bin.hz), log = bin.log_gain / M_LN10;
