@@ -145,7 +145,7 @@ struct RidgeForecast {
   Eigen::MatrixXf weights;  // coordinates x frames, by features
   Eigen::VectorXf bias;
 
-  // As many frames as it was fitted for; observed: at least ten frames.
+  // Forecast of as many frames as the network was fitted for; observed: at least ten frames.
   Trajectories Forecast(const Trajectories& observed) const;
 };
 

@@ -292,7 +292,7 @@ TEST_F(AnyRecordingTest, ASensorInTheFileOfTheMotion) {
   EXPECT_TRUE(Contains(run.out, "6 rows from frame 15")) << run.out;
   EXPECT_TRUE(Contains(run.out, "its clock at frame 0 is 0.1667 s")) << run.out;
 
-  // As above, in a file of its own that began with the motion's, with a load cell that reads 2.3 N.
+  // Plates in a file of its own that began with the motion's, with a load cell that reads 2.3 N.
   std::string text = "time,force\n";
   for (int i = 0; i < 20 * frames; ++i) {
     const double force = c3d.analog[0].samples[i] + 2.3;

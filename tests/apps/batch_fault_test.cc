@@ -150,7 +150,7 @@ TEST_F(BatchFaultTest, InterruptedItGoesOnLater) {
   EXPECT_EQ(Table("out"), Table("whole"));
 }
 
-// As "timeout -s INT" sends it, to the process and then to its group.
+// SIGINT as "timeout -s INT" sends it, to the process and then to its group.
 TEST(SignalReader, AnInterruptThatComesTwiceIsRead) {
   {
     SignalReader reader;

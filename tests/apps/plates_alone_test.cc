@@ -39,7 +39,7 @@ class PlatesAloneApp : public AppTest {
     for (auto& entry : json["recordings"]) {
       for (const char* key : {"bvh", "joints", "frames", "fps"}) entry.erase(key);
       entry["motion"] = "none";
-      // As the skeletons of the simulation have them.
+      // Joints are those of the simulation's skeletons.
       entry["subjects"][0]["rod_m"] = RodOf(entry["id"]);
     }
     return "--recordings=" + WriteText("swaying/plates.json", json.dump(1));

@@ -28,7 +28,7 @@ const LearnedTerms& Network(int64_t index) {
   return networks[index];
 }
 
-// As a fit begins, the outputs small instead of zero: people move nearly as without.
+// Weights at the start of a fit, with small outputs instead of zero: people move nearly as without.
 std::vector<double> SomeWeights(const LearnedTerms& network) {
   std::vector<double> weights = InitialNetwork(network.shape, 7, network.rod)->weights;
   Random random(7);

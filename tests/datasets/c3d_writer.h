@@ -101,7 +101,7 @@ class C3dWriter {
         if (p.allFinite()) largest = std::max(largest, p.cwiseAbs().maxCoeff());
       }
     }
-    // As it is stored: the reader multiplies by the rounded number.
+    // The scale is the stored one: the reader multiplies by the rounded number.
     scale_ = static_cast<float>(largest / kLargestInteger);
     for (const C3dAnalogChannel& channel : file_.analog) {
       double peak = 1e-6;

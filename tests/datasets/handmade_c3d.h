@@ -141,7 +141,7 @@ inline HandmadeC3d UnsignedC3d(C3dProcessor processor = C3dProcessor::kIntel) {
   return file;
 }
 
-// As above without a word of the format: an offset at the end of the signed range says it.
+// An analog offset at the end of the signed range, without a word of the format.
 inline HandmadeC3d UnsaidUnsignedC3d(C3dProcessor processor = C3dProcessor::kIntel) {
   HandmadeC3d file(processor);
   file.raw = {32668, 32868};
@@ -172,7 +172,7 @@ inline HandmadeC3d TrialC3d(int frames, C3dProcessor processor = C3dProcessor::k
   return file;
 }
 
-// As above, by POINT:LONG_FRAMES.
+// The number of frames by POINT:LONG_FRAMES.
 inline HandmadeC3d LongFramesC3d(int frames, C3dProcessor processor = C3dProcessor::kIntel) {
   HandmadeC3d file(processor);
   file.frames = frames;

@@ -29,7 +29,7 @@ TEST_F(CvaeAppTest, TheCvaeTrainsAndIsUsed) {
   Succeeded(RunApp("pushid-evaluate", {model_, Recordings(), "--restoration=" + Path("v")}));
 }
 
-// As published: sizes are said beside the release's, and z is drawn where that is asked for.
+// LDP's sampler as published: sizes are said beside the release's; z is drawn where asked for.
 TEST_F(CvaeAppTest, ThePublishedCvaeSaysItsSizesAndDraws) {
   const std::vector<std::string> flags = {"--kind=cvae", "--effort=0.001", "--training=published",
                                           "--coordinates=ldp"};

@@ -46,8 +46,8 @@ TEST_F(PointFilesTest, TrcRoundTrip) {
   ExpectSameTracks(read.positions, SamplePoints().positions);
 }
 
-// As OpenSim and Cortex write it: tabs at the end of lines, no blank line, a marker that leaves its
-// last cells out.
+// A TRC file as of OpenSim and Cortex: tabs at the end of lines, no blank line, a marker that
+// leaves its last cells out.
 constexpr char kTrc[] =
     "PathFileType\t4\t(X/Y/Z)\twalk.trc\t\n"
     "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\t"

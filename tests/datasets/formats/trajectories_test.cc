@@ -18,7 +18,7 @@ class TrajectoriesTest : public TempDirTest {
   }
 };
 
-// As PeTrack writes it: centimetres, people who come and go.
+// A file of PeTrack's: centimetres, people who come and go.
 TEST_F(TrajectoriesTest, Text) {
   const std::string path = WriteText("crowd.txt",
                                      "# description: corridor\n# framerate: 16.00 fps\n"
@@ -39,7 +39,7 @@ TEST_F(TrajectoriesTest, Text) {
   EXPECT_EQ(one.value().positions[0].size(), 2u);
 }
 
-// As spreadsheets and scripts write them, whatever the order of the columns.
+// Files of spreadsheets and scripts, whatever the order of the columns.
 TEST_F(TrajectoriesTest, AsCsv) {
   const std::string path = WriteText("heads.csv",
                                      "time,id,frame,x/cm,y/cm\n4.00,7,100,10,20\n4.04,7,101,11,20\n"

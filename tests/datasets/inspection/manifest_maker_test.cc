@@ -321,7 +321,7 @@ TEST_F(ManifestMakerTest, Masses) {
   }
 }
 
-// As spreadsheets write them.
+// Masses in the forms that spreadsheets write.
 TEST_F(ManifestMakerTest, MassesInOtherDialects) {
   for (const char* text : {"id,mass_kg\nanna,\"62.7\"\n", "\"id\",\"mass_kg\"\n\"anna\",\"62.7\"\n",
                            "ID,Mass_kg\nanna,62.7\n", "id;mass_kg\nanna;62.7\n",

@@ -30,7 +30,7 @@ TEST_F(SensorCsv, ReadsVectors) {
   EXPECT_EQ(record.force[2], Eigen::Vector3d(7.0, 8.0, 9.0));
 }
 
-// As other programs write them.
+// Sensor files of other programs.
 TEST_F(SensorCsv, ReadsWhatIsPlain) {
   for (const char* text :
        {"Time,Force\n0,1\n0.01,2\n0.02,3\n", "TIME,FORCE\n0,1\n0.01,2\n0.02,3\n",

@@ -65,7 +65,7 @@ TEST(PushRange, WarnsOfWhatLiesOutsideByMoreThanAQuarter) {
   EXPECT_TRUE(ExtrapolationWarnings(model, fitted).empty());
   EXPECT_TRUE(
       ExtrapolationWarnings(model, {PushedPerson("c", PushKind::kExternal, 48, 60.0)}).empty());
-  // As long as the others and twice as strong.
+  // A push as long as the others and twice as strong.
   const auto strong =
       ExtrapolationWarnings(model, {PushedPerson("c", PushKind::kExternal, 40, 120.0)});
   ASSERT_EQ(strong.size(), 1u);

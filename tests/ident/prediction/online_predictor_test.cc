@@ -62,7 +62,7 @@ TEST_F(OnlinePredictorTest, PhysicsIsTheRolloutMovedOn) {
   }
 }
 
-// As far as Predict, and without an end: window after window.
+// Window after window without an end: each prediction is that of Predict.
 TEST_F(OnlinePredictorTest, NextIsThePredictionAsFarAsItGoes) {
   SyntheticOptions study = study_;
   study.frames = 260;

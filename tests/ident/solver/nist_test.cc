@@ -56,7 +56,7 @@ struct Score {
   int iterations = 0;
 };
 
-// As a fit whose every row is one residual block of the same recording.
+// A fit whose every row is one residual block of the same recording.
 Score RunSet(const NistSet& set, const std::vector<double>& start) {
   std::vector<double> b = start;
   FitProblem::Built built;

@@ -30,7 +30,7 @@ GroupMotion Walkers(int begin, int begin_in_front, int frames = 30) {
   return group;
 }
 
-// As many frames as asked for, with straight lines in between.
+// The motion in so many frames, with straight lines in between.
 BodyMotion AtSpeed(const BodyMotion& motion, double speed, int frames) {
   return Resampled(motion, 1.0, speed, frames);
 }

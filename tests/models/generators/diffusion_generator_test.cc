@@ -49,7 +49,7 @@ TEST_F(DiffusionGeneratorTest, ForecastsRepeatThemselvesInAnyOrder) {
   }
 }
 
-// As published: everybody in their own frame, pooled at the bottleneck, without fading.
+// The published generator: everybody in their own frame, pooled at the bottleneck, without fading.
 TEST_F(DiffusionGeneratorTest, TheOrderOfPeopleMakesNoDifferenceAsPublished) {
   options_.settle = false;
   for (const SocialPooling pooling : {SocialPooling::kMeanAll, SocialPooling::kHeads}) {
