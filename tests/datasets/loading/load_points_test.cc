@@ -98,8 +98,10 @@ TEST_F(LoadPointsTest, SeveralPeopleInOneFile) {
   EXPECT_TRUE(Contains(Message(), "joints: hip: hip could be 'S1:LASI' or 'S2:LASI'"));
   for (int n = 0; n < 2; ++n) {
     const std::string prefix = "S" + std::to_string(n + 1) + ":";
-    entry().subjects[n].joints = {JointReference{"", -1, {{prefix + "LASI"}, {prefix + "RPSI"}}},
-                                  JointReference{prefix + "LANK"}, JointReference{prefix + "RANK"}};
+    JointMapping& joints = entry().subjects[n].joints;
+    joints.Set(kBodyHip, JointReference{"", -1, {{prefix + "LASI"}, {prefix + "RPSI"}}});
+    joints.Set(kLeftAnkle, JointReference{prefix + "LANK"});
+    joints.Set(kRightAnkle, JointReference{prefix + "RANK"});
   }
   const auto loaded = Unwrapped(Load());
   EXPECT_NEAR(loaded[0].people[1].left_ankle[0].y(), 0.6, 1e-9);
@@ -158,9 +160,9 @@ TEST_F(LoadPointsTest, ToesOfSeveralPeople) {
   const std::vector<std::string> names = {"A:Hips", "A:L_Ankle", "A:R_Ankle", "A:L_Foot", "B:Hips",
                                           "B:LANK", "B:RANK",    "B:LTOE",    "A:LTOE",   "B:RTOE"};
   JointMapping of_b;
-  of_b.hip = JointReference{"B:Hips"};
-  of_b.left_ankle = JointReference{"B:LANK"};
-  of_b.right_ankle = JointReference{"B:RANK"};
+  of_b.Set(kBodyHip, JointReference{"B:Hips"});
+  of_b.Set(kLeftAnkle, JointReference{"B:LANK"});
+  of_b.Set(kRightAnkle, JointReference{"B:RANK"});
   const auto b = Unwrapped(ChoosePendulumPoints("x", names, of_b));
   EXPECT_EQ(b.left_toe, std::vector<int>{7});
   EXPECT_EQ(b.right_toe, std::vector<int>{9});
