@@ -40,7 +40,8 @@ Eigen::MatrixXd SolveLeastNorm(const Eigen::MatrixXd& a, const Eigen::MatrixXd& 
 Eigen::VectorXd SolveLeastNorm(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 Eigen::MatrixXd PseudoInverse(const Eigen::MatrixXd& a);
 
-// By a QR decomposition with pivoting: pivots below `threshold` of the largest are zero.
+// The rank by a QR decomposition with pivoting, where pivots below `threshold` of the largest count
+// as zero.
 int Rank(const Eigen::MatrixXd& a, double threshold);
 
 // R of A = Q R, for at least as many rows as columns.

@@ -72,7 +72,7 @@ std::vector<std::string> AllNames() {
   return AllNames<E>([](const auto&) { return true; });
 }
 
-// For messages.
+// The names in a sentence of a message: "a, b or c".
 template <typename E, typename Keep>
 std::string AnyName(Keep keep) {
   return Listed(AllNames<E>(keep), "or");

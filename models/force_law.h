@@ -46,7 +46,7 @@ class ForceLaw {
   virtual Vector4<double> Force(const LawPerson& person, const Inputs& inputs,
                                 Jacobian* jacobian) const = 0;
 
-  // For any scalar; own: the law's parameters.
+  // The force in any scalar; own: the law's parameters.
   template <typename T>
   Vector4<T> Chain(const LawPerson& person, const PendulumState<T>& state, const T* own) const;
 

@@ -22,10 +22,11 @@ struct GroundStep {
   double gravity = kGravity;                               // g_n: towards the ground, m/s^2
 };
 
-// Where the ground is, in the laboratory: m, m; tilt about y and about x as theta and phi are, rad.
+// The place of the ground in the laboratory: m, m; tilt about y and about x as theta and phi are,
+// rad.
 using GroundPose = Vector4<double>;
 
-// Empty: ground that does not move.
+// The ground's motion by frame; empty: it does not move.
 struct GroundMotion {
   std::vector<GroundPose> poses;  // one per frame
   std::vector<GroundStep> steps;  // one per frame; of the last the one before
@@ -112,7 +113,7 @@ GroundReactionOf<T> ReactionOn(const ReactionForce<T>& of, const T& height, cons
           q[1] + (of.force[3] - height * of.force[1]) / of.vertical};
 }
 
-// For a pendulum that accelerates so; push: N, N m.
+// The reaction of the ground to a pendulum that accelerates by a; push: N, N m.
 template <typename T>
 GroundReactionOf<T> GroundReaction(const BodyOf<T>& body, const PendulumState<T>& state,
                                    const Vector4<T>& a, const GroundStep& ground,

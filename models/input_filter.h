@@ -81,10 +81,10 @@ class InputFilter {
   static Vector4<double> FromPlanes(const Eigen::Vector2d& first, const Eigen::Vector2d& second);
 
   void Forget();
-  // So many rows of what is unknown, from the last frame on; a step asks for the first alone.
+  // Sets how many rows are unknown from the last frame on; a step asks for the first alone.
   void SetInputs(int rows) const;
 
-  // On the heap: the step points to them.
+  // The model is on the heap, since its step points to its parts.
   struct Model {
     Scene scene;  // frames count from `first_`; behind the known pushes one a plane, then Push's
     std::vector<ParameterSet<double>> parameters;

@@ -105,7 +105,7 @@ T ContactLoad(const ParameterSet<T>& p, const T& d, const Vector2<T>& r0) {
   return free - d;
 }
 
-// From j's contact point to n's at frame 0.
+// The vector from j's contact point to n's at frame 0.
 template <typename T>
 Vector2<T> BetweenFirstContactPoints(const Pair& pair, const T& height) {
   return ContactPoint(pair.body_n, pair.first_n.q, pair.first_n.angles, height) -

@@ -226,7 +226,7 @@ Vector4<T> InverseDynamics(const BodyOf<L>& body, const PendulumState<T>& state,
 // m' l' = M s c l is its first moment and m' l'^2 = M s (c^2 + r^2) l^2 its inertia about the
 // ankles, and the cart's row holds M in either case.
 
-// In shares of the body's mass, and in lengths of the rod.
+// A body's masses in shares of the whole, and their heights in lengths of the rod.
 template <typename T>
 struct MassDistributionOf {
   T cart_share = T(kCartShare);

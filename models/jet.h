@@ -117,7 +117,7 @@ struct JetOf {
     const T inverse = 1.0 / y.a, value = x.a / y.a;
     return Sum(value, inverse, x, -value * inverse, y);
   }
-  // With a constant, which has no derivatives to carry.
+  // Operations with a constant, which has no derivatives to carry.
   friend JetOf operator+(JetOf x, double c) { return x.a += c, x; }
   friend JetOf operator+(double c, JetOf x) { return x.a = c + x.a, x; }
   friend JetOf operator-(JetOf x, double c) { return x.a -= c, x; }

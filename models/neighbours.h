@@ -49,7 +49,7 @@ class NeighbourGrid {
   int Rank(int person) const { return rank_[person]; }
 
  private:
-  // So few are compared with each other directly.
+  // Groups of at most so many people are compared with each other directly.
   static constexpr std::size_t kFewPeople = 12;
 
   using GridCell = std::pair<std::int64_t, std::int64_t>;

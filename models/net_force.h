@@ -18,10 +18,6 @@ enum class ActiveForces { kAll, kPushAndFriction, kPushOnly };
 
 ActiveForces ForcesAt(const Scene& scene, PushUse use, int person, int frame);
 
-inline bool HasTail(const ModelOptions& options) {
-  return options.push_tail == PushTail::kExponential && options.stance != Stance::kFixed;
-}
-
 // The force of all pushes on a person in one step, without tails. Constant in the parameters.
 Vector4<double> PushForceAt(const Scene& scene, int person, int frame);
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "models/enum_names.h"
-#include "models/model_rows.h"
 
 namespace pushid {
 
@@ -110,15 +109,16 @@ constexpr EnumNames<GainScaling, 3> Names(GainScaling) {
       {{"none", GainScaling::kNone}, {"mass", GainScaling::kMass}, {"body", GainScaling::kBody}}};
 }
 
-#define PUSHID_FRICTION(id, ...) id,
-enum class FrictionKind { PUSHID_FRICTION_LAWS(PUSHID_FRICTION) };
-#undef PUSHID_FRICTION
-#define PUSHID_FRICTION(...) +1
-constexpr EnumNames<FrictionKind, 0 PUSHID_FRICTION_LAWS(PUSHID_FRICTION)> Names(FrictionKind) {
-#undef PUSHID_FRICTION
-#define PUSHID_FRICTION(id, name, ...) {name, FrictionKind::id},
-  return {{PUSHID_FRICTION_LAWS(PUSHID_FRICTION)}};
-#undef PUSHID_FRICTION
+// The law of the drag of a cart that slides (self_terms.h).
+enum class FrictionKind {
+  kIsotropic,    // one mu
+  kAnisotropic,  // one for each axis
+  kCoulomb       // mu and dry friction
+};
+constexpr EnumNames<FrictionKind, 3> Names(FrictionKind) {
+  return {{{"isotropic", FrictionKind::kIsotropic},
+           {"anisotropic", FrictionKind::kAnisotropic},
+           {"coulomb", FrictionKind::kCoulomb}}};
 }
 
 // Treatment of the other forces while a push lasts.
@@ -200,6 +200,10 @@ struct ModelOptions {
   std::vector<std::shared_ptr<const ForceLaw>> own_laws = {};
   ProcessNoise process_noise = ProcessNoise::kNone;
 };
+
+inline bool HasTail(const ModelOptions& options) {
+  return options.push_tail == PushTail::kExponential && options.stance != Stance::kFixed;
+}
 
 // Assumptions of the filter of unknown forces (input_filter.h).
 struct InputNoise {

@@ -7,7 +7,7 @@
 namespace pushid {
 namespace {
 
-// Where the bone of a particle begins.
+// The place at which the bone of a particle begins.
 Eigen::Vector3f BoneStart(const Eigen::Ref<const Eigen::VectorXf>& pose,
                           const ParticleLayout& layout, int particle) {
   const int parent = layout.parents[particle];

@@ -59,7 +59,7 @@ class StateStep {
   virtual void Velocity(int frame, int person, double* next, double* by_state) = 0;
 };
 
-// By a scalar D that holds a value and eight derivatives.
+// A step whose scalar D holds a value and eight derivatives.
 template <typename D>
 class StepByJet final : public StateStep {
  public:
@@ -130,7 +130,7 @@ class PendulumFilter {
                  const std::vector<ParameterSet<double>>& parameters,
                  std::unique_ptr<StateStep> step = nullptr);
 
-  // From `frame` to the next.
+  // Goes on from `frame` to the next.
   RolloutStatus Predict(int frame);
 
   // weight: of the measurement, in (0, 1]; its errors are as much larger as that is less.

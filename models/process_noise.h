@@ -42,9 +42,7 @@ Matrix4<T> MeasurementCovariance(const Body& body, const ParameterSet<T>& p) {
   return covariance;
 }
 
-// Where random numbers come from; models hold no random generator of their own.
-
-// Standard normal draws.
+// The source of standard normal draws; models hold no random generator of their own.
 using NormalSource = std::function<double()>;
 
 }  // namespace pushid

@@ -129,7 +129,8 @@ BodyOf<T> BodyAtRest(const ModelOptions& options, const Body& body, const Parame
   return DynamicBody(options, body, p, options.stance == Stance::kFixed);
 }
 
-// By the state with all that is perceived of it at once, as without a delay; or by each alone.
+// What a model at rest is linearized by: the state with all that is perceived of it at once, as
+// without a delay, or one of these alone.
 enum class RestInput { kAll, kState, kAnkle, kStep };
 
 RestJacobian LinearizeAtRest(const ModelOptions& options, const SelfForce& self,

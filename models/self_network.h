@@ -80,7 +80,7 @@ struct NetworkShape {
   int embedding = 0;  // of ldp, which always has one
 
   bool any() const { return kind != NetworkKind::kNone; }
-  // With biases, the mass and a memory.
+  // True for LDP's network, which has biases, the mass and a memory.
   bool ldp() const { return kind == NetworkKind::kLdp; }
   int cells() const { return ldp() ? hidden : 0; }
   int num_features() const { return ldp() ? embedding : kMotionInputs; }
@@ -89,7 +89,7 @@ struct NetworkShape {
   int gate_width() const { return gate_inputs() + 2; }
   int embed_width() const { return kMotionInputs + 2; }
   int output_width() const { return hidden + (ldp() ? 1 : 0); }
-  // Where each matrix starts in the flat array.
+  // Places at which the matrices start in the flat array.
   int gates_at() const { return embedding * embed_width(); }
   int output_at() const { return gates_at() + gate_rows() * gate_width(); }
   int num_weights() const { return any() ? output_at() + 4 * output_width() : 0; }

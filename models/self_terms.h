@@ -28,9 +28,7 @@
 
 namespace pushid {
 
-// Laws of friction of the cart; which there are: model_rows.h.
-
-// Laws of friction (PUSHID_FRICTION_LAWS), without branches, since a scalar may hold several
+// Laws of friction of the cart (FrictionKind), without branches, since a scalar may hold several
 // people. scale: of forces; p: the parameters from kMu up to kKpX; weight: N.
 struct LinearDrag {
   template <typename T, typename L, typename Set>
@@ -57,7 +55,7 @@ struct CoulombDrag {
 // The convention by which mu is told from Kp.
 //
 // Friction and the balance gain act on the same velocity, so the data know only their sum,
-//   c_x = mu + Kp_x,   c_y = mu_y + Kp_y   (mu_y: the row's along_y, model_rows.h), N s/m.
+//   c_x = mu + Kp_x,   c_y = mu_y + Kp_y   (mu_y: FrictionAlongY), N s/m.
 // A fit holds Kp_x and Kp_y, fits c by way of mu, and says so: mu = c - Kp. Kp free as well leaves
 // the two unidentifiable, which the fit then reports.
 struct CartDamping {
@@ -71,14 +69,9 @@ struct CartDamping {
   }
 };
 
-// The parameter that is the friction along y.
+// The parameter that is the drag along y as mu is along x.
 constexpr Parameter FrictionAlongY(FrictionKind kind) {
-  constexpr Parameter kAlongY[] = {
-#define PUSHID_FRICTION(id, name, along_y, ...) along_y,
-      PUSHID_FRICTION_LAWS(PUSHID_FRICTION)
-#undef PUSHID_FRICTION
-  };
-  return kAlongY[static_cast<int>(kind)];
+  return kind == FrictionKind::kAnisotropic ? kMuY : kMu;
 }
 
 // Along x, and along y.
@@ -133,14 +126,16 @@ struct SelfTerms {
   // p: by Parameter, of friction's own at least.
   template <typename T, typename Set>
   Vector4<T> Friction(const Set& p, const Vector4<T>& qd) const {
+    const Parameter along_y = FrictionAlongY(friction);
+    const L weight(body.mass * kGravity);
     switch (friction) {
-#define PUSHID_FRICTION(id, name, along_y, Law) \
-  case FrictionKind::id:                        \
-    return Law::Force<T>(scale.force, p, along_y, qd, L(body.mass * kGravity));
-      PUSHID_FRICTION_LAWS(PUSHID_FRICTION)
-#undef PUSHID_FRICTION
+      case FrictionKind::kIsotropic:
+      case FrictionKind::kAnisotropic:
+        break;
+      case FrictionKind::kCoulomb:
+        return CoulombDrag::Force<T>(scale.force, p, along_y, qd, weight);
     }
-    return {T(0.0), T(0.0), T(0.0), T(0.0)};  // no such law
+    return LinearDrag::Force<T>(scale.force, p, along_y, qd, weight);
   }
 
   // qd_previous: the velocity one frame earlier, for the backward difference of the cart's

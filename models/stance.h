@@ -230,7 +230,7 @@ class StanceStep : StanceNumbers {
     return p_.foot_front + falls * (0.5 * p_.front - p_.foot_front);
   }
 
-  // On with the foot in the air, which was as in `feet` when the step began; its clock may be
+  // Goes on with the foot in the air, which was as in `feet` when the step began; its clock may be
   // negative: then it leaves during the step.
   void Swing(const FeetState<T>& feet) {
     using std::exp;

@@ -4,7 +4,7 @@
 //
 // All of it, from top to bottom: drag and balance, by what the feet do; then all that acts on one
 // person; the acceleration; the next state; and everybody. A law is one formula, in the file named
-// beside its call, and one row (model_rows.h, options.h). Templated, so that the same lines serve
+// beside its call, and one row (options.h, parameters.h). Templated, so that the same lines serve
 // doubles and jets; step_memory.h holds what lasts longer than a step.
 #pragma once
 
@@ -88,7 +88,7 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
   }
   if (active != ActiveForces::kAll) return force;
   if (table) force[ForcePart::kBalance].template tail<2>() += HoldOfTable(self, p);
-  // Only here: a push that is the whole force includes the tail of an earlier one.
+  // The tail stands here alone: a push that is the whole force includes the tail of an earlier one.
   for (const ScenePush& push : scene.pushes) {
     if (push.person != person || !HasTail(options)) continue;
     force[ForcePart::kTail] +=

@@ -13,7 +13,7 @@ namespace pushid {
 
 ParameterTable BaseTable() {
   ParameterTable table;
-  for (const ParameterFacts& facts : AllParameterFacts()) table.Add(facts);
+  for (const ParameterRow& row : kParameterRows) table.Add(row.facts);
   return table;
 }
 
@@ -102,7 +102,8 @@ std::string ParameterGlossary() {
   std::string text =
       "| name | symbol | unit | without preset | bounds | meaning | when to free it |\n"
       "|---|---|---|--:|---|---|---|\n";
-  for (const ParameterFacts& facts : AllParameterFacts()) {
+  for (const ParameterRow& row : kParameterRows) {
+    const ParameterFacts& facts = row.facts;
     const std::string bounds = Rounded(facts.lower) + " to " + Rounded(facts.upper);
     text += "| " +
             Joined({std::string(facts.name), std::string(facts.symbol), std::string(facts.unit),

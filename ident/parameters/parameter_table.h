@@ -1,4 +1,4 @@
-// ident: the one table of parameters in a fit: what is known of each (models/model_rows.h) and
+// ident: the one table of parameters in a fit: what is known of each (models/parameters.h) and
 // what the fit does with it: start, free or fixed, pooled, prior. Flags edit it; the solver, the
 // report and the result JSON read it.
 #pragma once
@@ -117,7 +117,7 @@ struct CovariatesOfParameter {
 // either side, the same covariate of a parameter twice.
 Result<std::vector<CovariatesOfParameter>> ParseCovariates(const std::string& text);
 
-// Every parameter in words, from its row (models/model_rows.h), as a table in Markdown: name,
+// Every parameter in words, from its row (models/parameters.h), as a table in Markdown: name,
 // symbol (in the equation that heads the file of its term), unit, value where no preset sets one,
 // bounds, meaning, and when to free it.
 std::string ParameterGlossary();

@@ -311,7 +311,7 @@ FitProblem WithNoise(const FitProblem& problem, FitPoint* point) {
     FitOptions options = problem.options();
     const auto start = [&options](Parameter id, double value, bool clamped) {
       ParameterSpec& spec = options.table[id];
-      if (!spec.free || spec.nominal != AllParameterFacts()[id].nominal) return;
+      if (!spec.free || spec.nominal != kParameterRows[id].facts.nominal) return;
       spec.nominal = clamped ? std::clamp(value, 2.0 * spec.lower, 0.5 * spec.upper) : value;
     };
     for (int i = 0; i < 4; ++i) {

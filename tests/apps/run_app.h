@@ -57,9 +57,9 @@ inline std::string ReadFromStart(std::FILE* file) {
 }
 
 // Output goes to unnamed files rather than pipes: nothing can fill up and block. An app that is not
-// done after `seconds` (times kSlowdown), or when there is a file `until`, is killed.
+// done after `seconds` (times kSlowdown) is killed.
 inline AppRun RunProgram(const std::string& path, const std::vector<std::string>& arguments,
-                         double seconds = 120.0, const std::string& until = "") {
+                         double seconds = 120.0) {
   std::vector<char*> argv = {const_cast<char*>(path.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
@@ -84,7 +84,7 @@ inline AppRun RunProgram(const std::string& path, const std::vector<std::string>
     const auto deadline = Clock::now() + std::chrono::duration<double>(seconds * kSlowdown);
     int status = 0;
     while (waitpid(child, &status, WNOHANG) == 0) {
-      if (!run.timed_out && (Clock::now() > deadline || access(until.c_str(), F_OK) == 0)) {
+      if (!run.timed_out && Clock::now() > deadline) {
         run.timed_out = true;
         kill(child, SIGKILL);
       }
@@ -101,8 +101,8 @@ inline AppRun RunProgram(const std::string& path, const std::vector<std::string>
 
 // One of the project's own.
 inline AppRun RunApp(const std::string& name, const std::vector<std::string>& arguments,
-                     double seconds = 120.0, const std::string& until = "") {
-  return RunProgram(std::string(PUSHID_BIN_DIR) + "/" + name, arguments, seconds, until);
+                     double seconds = 120.0) {
+  return RunProgram(std::string(PUSHID_BIN_DIR) + "/" + name, arguments, seconds);
 }
 
 }  // namespace pushid

@@ -15,7 +15,7 @@ namespace {
 
 // One row by hand, column by column.
 TEST(ParameterFacts, TheFirstRow) {
-  const ParameterFacts& mu = AllParameterFacts()[kMu];
+  const ParameterFacts& mu = kParameterRows[kMu].facts;
   EXPECT_EQ(mu.name, "mu");
   EXPECT_EQ(mu.symbol, "mu");
   EXPECT_EQ(mu.unit, "N s/m");
@@ -27,13 +27,13 @@ TEST(ParameterFacts, TheFirstRow) {
   EXPECT_EQ(mu.meaning, "drag of the stepping feet (not floor friction)");
   EXPECT_FALSE(mu.when_to_free.empty());
   EXPECT_EQ(kParameterNames[kContactHeight], "contact_height");
-  EXPECT_EQ(AllParameterFacts()[kContactHeight].transform, Transform::kIdentity);
+  EXPECT_EQ(kParameterRows[kContactHeight].facts.transform, Transform::kIdentity);
 }
 
 TEST(ParameterFacts, EveryRowIsSound) {
   std::set<std::string_view> names;
   for (int i = 0; i < kFirstOwnParameter; ++i) {
-    const ParameterFacts& facts = AllParameterFacts()[i];
+    const ParameterFacts& facts = kParameterRows[i].facts;
     EXPECT_EQ(facts.name, kParameterNames[i]);
     EXPECT_TRUE(names.insert(facts.name).second) << facts.name << " stands twice";
     EXPECT_EQ(Violation(facts), "") << facts.name;
