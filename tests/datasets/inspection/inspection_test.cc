@@ -243,7 +243,7 @@ TEST_F(InspectionTest, C3d) {
   ASSERT_FALSE(WriteC3d(Path("a.c3d"), SampleC3d()));
   const std::string said = Of("a.c3d");
   for (const char* part : {"a.c3d: C3D, Intel, floats", "Anna:HIP", "rod", "at 1000 per second",
-                           "platform:1 type", "peak 700 N", "61.25 s Foot Off (Right)"}) {
+                           "platform:1 type", "peak 700 N"}) {
     EXPECT_TRUE(Contains(said, part));
   }
   C3dFile odd = SampleC3d();

@@ -201,7 +201,6 @@ INSTANTIATE_TEST_SUITE_P(
             "be read as none; did you mean theta?"),
         std::tuple("no_time", kGround, "x,y\n0,1\n1,2\n2,3\n", "no column called time"),
         std::tuple("no_file", R"({"ground": {"start": 1}})", "", "csv is missing"),
-        std::tuple("markers", R"({"ground": {"markers": ["a", "b", "c"]}})", "", "markers is not"),
         std::tuple("quantity", R"({"ground": {"csv": "wrong.csv", "quantity": "jerk"}})", "",
                    "quantity"),
         std::tuple("unknown_key", R"({"ground": {"csv": "wrong.csv", "star": 1}})", "", "star"),
