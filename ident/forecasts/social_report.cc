@@ -58,14 +58,16 @@ std::vector<Symbols> StepsInto(const std::vector<Symbols>& all, size_t k) {
 void AddWords(const MotionWords& words, const Groups& groups, SocialRow* row) {
   if (words.size() == 0) return;
   std::vector<double> sums, counts;
+  double sum = 0.0, count = 0.0;
   for (const BodyMotion& person : CountedMotions(groups)) {
     const std::vector<double> scores = words.Scores(person);
     sums.resize(std::max(sums.size(), scores.size()));
     counts.resize(sums.size());
     for (size_t k = 0; k < scores.size(); ++k) sums[k] += scores[k], counts[k] += 1.0;
+    sum += std::accumulate(scores.begin(), scores.end(), 0.0);
+    count += static_cast<double>(scores.size());
   }
-  const double count = std::accumulate(counts.begin(), counts.end(), 0.0);
-  if (count > 0.0) row->ndms = std::accumulate(sums.begin(), sums.end(), 0.0) / count;
+  if (count > 0.0) row->ndms = sum / count;
   for (size_t k = 0; k < sums.size(); ++k) row->ndms_by_frame.push_back(sums[k] / counts[k]);
 }
 

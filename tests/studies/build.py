@@ -1,24 +1,21 @@
 """What a build costs.
 
-commands    tests/README.md; the two commands of README.md in a fresh clone, one after the other, without a
-            compiler cache: a quarter of an hour
+log    tests/README.md; of build/release as it stands, by Ninja's log: objects, object seconds, the slowest ones. After
+       `CCACHE_DISABLE=1 bash tests/run.sh` in a fresh clone these are the two commands of README.md
 
-    python3 tests/studies/build.py log             of build/release as it stands: objects, seconds, the slowest ten
     python3 tests/studies/build.py --check BUILD   the headers that cost most and the number of objects; fails where they grow
 
 Object seconds are the time on the clock that Ninja noted for each object, added up; objects are compiled side by side. So that
-machines compare, they are given in reference objects too: in the seconds of REFERENCE, compiled at the same time.
+machines compare, they are given in reference objects too: in the seconds of REFERENCE, compiled at the end. The quickstart's are
+those objects that its programs need.
 """
 import os
 import re
 import subprocess
 import sys
-import tempfile
-import time
 
 import studies
 
-COMMANDS = {"quickstart": "apps/quickstart.sh", "tests": "tests/run.sh"}
 REFERENCE = """
 #include <ceres/ceres.h>
 
@@ -98,13 +95,15 @@ def targets_objects(build, target):
 
 def log():
     build = os.path.join(studies.SOURCE, "build/release")
-    seconds = objects(build)
-    reference, total = compile_seconds(REFERENCE), sum(seconds.values())
-    quickstart = sum(seconds.get(name, 0.0) for name in targets_objects(build, "pushid_quickstart"))
-    print(f"build: {len(seconds)} objects, {total:.0f} object seconds; a reference object takes {reference:.1f} s: "
-          f"{total / reference:.0f} of them, {quickstart / reference:.0f} of the quickstart's", flush=True)
-    for name, value in sorted(seconds.items(), key=lambda item: -item[1])[:10]:
-        print(f"  {value:5.1f} s  {short(name)}")
+    every = objects(build)
+    quickstart = {name: every[name] for name in targets_objects(build, "pushid_quickstart") if name in every}
+    reference = compile_seconds(REFERENCE)
+    rows = [[name, len(some), f"{sum(some.values()):.0f}", f"{sum(some.values()) / reference:.0f}"]
+            for name, some in (("`bash apps/quickstart.sh`", quickstart), ("and `bash tests/run.sh`", every))]
+    slowest = sorted(every.items(), key=lambda item: -item[1])[:10]
+    return (studies.table(["command", "objects", "object seconds", "reference objects"], rows) +
+            f"\n\nA reference object took {reference:.1f} s. The slowest objects: " +
+            "; ".join(f"{short(name)}, {value / reference:.1f}" for name, value in slowest) + ".")
 
 
 def check(build):
@@ -116,39 +115,7 @@ def check(build):
     return all(count <= most for count, most in found.values())
 
 
-def minutes(seconds):
-    return f"{int(seconds) // 60} min {int(seconds) % 60:02d} s"
-
-
-def commands():
-    rows, before, total = [], {}, 0.0
-    environment = dict(os.environ, CCACHE_DISABLE="1", PUSHID_RECORDINGS=studies.RECORDINGS, PUSHID_FUZZ_SECONDS="0")
-    with tempfile.TemporaryDirectory() as folder:
-        clone = os.path.join(folder, "pushid")
-        subprocess.run(["git", "clone", "-q", studies.SOURCE, clone], check=True)
-        for name, script in COMMANDS.items():
-            start = time.monotonic()
-            with open(os.path.join(folder, name), "w", encoding="utf-8") as output:
-                subprocess.run(["bash", script], cwd=clone, env=environment, stdout=output, stderr=output, check=True)
-            took = time.monotonic() - start
-            total += took
-            now = objects(os.path.join(clone, "build/release"))
-            new = {key: value for key, value in now.items() if key not in before}
-            reference = compile_seconds(REFERENCE)
-            rows.append([f"`bash {script}`", len(new), f"{sum(new.values()):.0f}", f"{sum(new.values()) / reference:.0f}",
-                         minutes(took)])
-            before = now
-        rows.append(["both", len(before), f"{sum(before.values()):.0f}", f"{sum(before.values()) / reference:.0f}",
-                     minutes(total)])
-        slowest = sorted(before.items(), key=lambda item: -item[1])[:10]
-    return (studies.table(["command", "objects", "object seconds", "reference objects", "on the clock"], rows) + "\n\nThe slowest objects: " +
-            "; ".join(f"{short(name)}, {value:.0f} s" for name, value in slowest) + ".")
-
-
 if __name__ == "__main__":
-    if sys.argv[1:] == ["log"]:
-        log()
-    elif sys.argv[1:2] == ["--check"]:
+    if sys.argv[1:2] == ["--check"]:
         sys.exit(0 if check(sys.argv[2]) else 1)
-    else:
-        studies.main(__file__, {"commands": commands})
+    studies.main(__file__, {"log": log})

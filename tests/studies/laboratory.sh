@@ -29,7 +29,6 @@ echo "  $(realpath "$out")/report.html"
 say "Who steps: predicted by the model of who stands"
 "$bin/pushid-evaluate" --model="$out/standing.json" --recordings="$manifest" --setting=stepping \
   --json_out="$out/stepping.json" >"$out/stepping.txt" 2>"$out/warnings.txt"
-grep '^steps:' "$out/stepping.txt"
 
 say "Result"
 awk -F '  +' '
