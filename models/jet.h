@@ -161,8 +161,9 @@ struct JetOf {
   }
 };
 
-// The jet of rollouts: a pass of eight columns.
+// The jets of rollouts: a pass of eight columns, and of many, whose values are computed once.
 using VectorJet = JetOf<double, 8>;
+using WideJet = JetOf<double, 24>;
 
 }  // namespace
 

@@ -119,18 +119,10 @@ struct NetworkWeights {
   static Eigen::OuterStride<> Stride(int width) { return Eigen::OuterStride<>(width); }
 };
 
-// One person's inputs u, and the memory of an ldp network.
-template <typename T>
-struct NetworkState {
-  VectorX<T> inputs, hidden, cell;
-  Eigen::Vector2d context = Eigen::Vector2d::Zero();  // k
-
-  NetworkState(const NetworkShape& shape, const Body& body)
-      : inputs(VectorX<T>::Zero(kMotionInputs)),
-        hidden(VectorX<T>::Zero(shape.hidden)),
-        cell(VectorX<T>::Zero(shape.cells())),
-        context((body.mass - kReferenceMass) / kNetworkMass, 1.0) {}
-};
+// k of a person.
+inline Eigen::Vector2d NetworkContext(const Body& body) {
+  return {(body.mass - kReferenceMass) / kNetworkMass, 1.0};
+}
 
 template <typename T>
 VectorX<T> Squashed(const VectorX<T>& sum) {
@@ -147,25 +139,43 @@ VectorX<T> Logistic(const VectorX<T>& sum) {
   return sum.unaryExpr([](const T& a) { return T(1.0) / (T(1.0) + exp(-a)); });
 }
 
+// One person's inputs u, the memory of an ldp network, and what does not change during a rollout.
+template <typename T>
+struct NetworkState {
+  VectorX<T> inputs, hidden, cell;
+  VectorX<T> context;   // what the gates see of k
+  VectorX<T> rest;      // mlp: tanh(C k)
+  Eigen::Vector2d own;  // k
+  double force_unit;    // newtons and newton metres per unit of output
+
+  NetworkState(const NetworkShape& shape, const T* weights, const Body& body)
+      : inputs(VectorX<T>::Zero(kMotionInputs)),
+        hidden(VectorX<T>::Zero(shape.hidden)),
+        cell(VectorX<T>::Zero(shape.cells())),
+        own(NetworkContext(body)),
+        force_unit(shape.ForceUnit(body.mass)) {
+    context = NetworkWeights<T>(shape, weights).context * shape.GateContext(own).template cast<T>();
+    if (!shape.ldp()) rest = Squashed(context);
+  }
+};
+
 // One step of the network, its inputs set: the memory goes on, and the force is what it answers.
 template <typename T>
-Vector4<T> StepNetwork(const NetworkShape& shape, const T* weights, double mass,
-                       NetworkState<T>* state) {
+Vector4<T> StepNetwork(const NetworkShape& shape, const T* weights, NetworkState<T>* state) {
   if (!shape.any()) return Vector4<T>::Zero();
   const NetworkWeights<T> w(shape, weights);
   NetworkState<T>& s = *state;
   const int nf = shape.num_features(), h = shape.hidden;
-  const VectorX<T> context = w.context * shape.GateContext(s.context).template cast<T>();
   Vector4<T> output;
   if (!shape.ldp()) {
-    const VectorX<T> sum = w.gates * s.inputs + context;
-    s.hidden = Squashed(sum) - Squashed(context);
+    const VectorX<T> sum = w.gates * s.inputs + s.context;
+    s.hidden = Squashed(sum) - s.rest;
     output = w.output * s.hidden;
   } else {
-    const Eigen::Matrix<T, 2, 1> own = s.context.template cast<T>();
+    const Eigen::Matrix<T, 2, 1> own = s.own.template cast<T>();
     const VectorX<T> embedded = w.embed.leftCols(kMotionInputs) * s.inputs;
     const VectorX<T> features = Rectified<T>(embedded + w.embed.rightCols(2) * own);
-    VectorX<T> sum = w.gates.leftCols(nf) * features + context;
+    VectorX<T> sum = w.gates.leftCols(nf) * features + s.context;
     sum += w.gates.rightCols(h) * s.hidden;
     const VectorX<T> gates = Logistic<T>(sum.head(3 * h));  // i, f, o
     const VectorX<T> candidates = Squashed<T>(sum.tail(h));
@@ -174,7 +184,7 @@ Vector4<T> StepNetwork(const NetworkShape& shape, const T* weights, double mass,
     output = w.output.leftCols(h) * s.hidden;
     output += w.output.col(h);
   }
-  return T(shape.ForceUnit(mass)) * output;
+  return s.force_unit * output;
 }
 
 }  // namespace pushid

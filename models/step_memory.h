@@ -132,8 +132,8 @@ class StepMemory {
     const SelfForce& self = self_[person];
     SetMotionInputs<T>(state.q[2] - self.posture[0], state.q[3] - self.posture[1], state.qd,
                        &networks_[person].state.inputs);
-    networks_[person].force = StepNetwork(options_->learned->shape, network_weights_,
-                                          self.body.mass, &networks_[person].state);
+    networks_[person].force =
+        StepNetwork(options_->learned->shape, network_weights_, &networks_[person].state);
   }
 
   void StartNetworks(const T* weights) {
@@ -144,7 +144,8 @@ class StepMemory {
     network_weights_ = weights != nullptr ? weights : own_weights_.data();
     if (!learned.shape.any()) return;
     for (const SelfForce& self : self_) {
-      networks_.push_back({NetworkState<T>(learned.shape, self.body), Vector4<T>::Zero()});
+      networks_.push_back(
+          {NetworkState<T>(learned.shape, network_weights_, self.body), Vector4<T>::Zero()});
     }
   }
 

@@ -1,10 +1,9 @@
 // residuals: derivatives that are written out: of a person's own force, of the tail and of the
-// equations of motion, for rollouts in lanes (lanes/person_lanes_loops.h) and for the adjoint of
-// large networks (adjoint/step_adjoint.h). Everything else is differentiated by jets. These stay
-// because they pay: the self force's take a thirtieth of the time that jets need, the
-// tail's two fifths (tests/benchmarks, Jacobian_OfSelfForce, Jacobian_OfTail); a whole fit of
-// people alone less than half of that of jets (speed.py derivatives).
-// Tests hold them against automatic ones.
+// equations of motion, for rollouts in lanes (lanes/person_lanes_loops.h). Everything else is
+// differentiated by jets. These stay because they pay: the self force's take a thirtieth of the
+// time that jets need, the tail's two fifths (tests/benchmarks, Jacobian_OfSelfForce,
+// Jacobian_OfTail); a whole fit of people alone less than half of that of jets (speed.py
+// derivatives). Tests hold them against automatic ones.
 #pragma once
 
 #include "models/jet.h"
@@ -13,14 +12,12 @@
 
 namespace pushid {
 
-// Derivatives of a person's own force.
-// by_state: 4 x 8 over [q, qd]; by_previous: diagonal of the (x, y) derivatives by qd_previous;
-// by_parameter: 4 x kNumParameters. by_state is added to; of the others the same entries are always
+// Derivatives of a person's own force, without that of the cart's derivative. by_state: 4 x 8 over
+// [q, qd], added to; by_parameter: 4 x kNumParameters, of which the same entries are always
 // written, and the rest stay zero, since to clear them takes as long as the derivatives.
 template <typename T>
 struct SelfJacobian {
   Eigen::Matrix<T, 4, 8> by_state = Eigen::Matrix<T, 4, 8>::Zero();
-  Eigen::Matrix<T, 2, 1> by_previous = Eigen::Matrix<T, 2, 1>::Zero();
   Eigen::Matrix<T, 4, kNumParameters> by_parameter = Eigen::Matrix<T, 4, kNumParameters>::Zero();
 };
 
@@ -60,7 +57,7 @@ template <typename L, typename Set, typename T>
 // Derivatives of balance and the linear terms.
 template <typename L, typename Set, typename T>
 void AddControlJacobian(const SelfTerms<L>& self, const Set& p, const PendulumState<T>& state,
-                        const Vector4<T>& qd_previous, SelfJacobian<T>* jacobian) {
+                        SelfJacobian<T>* jacobian) {
   auto& by_state = jacobian->by_state;
   auto& by_parameter = jacobian->by_parameter;
   const auto& scale = self.scale;
@@ -78,15 +75,6 @@ void AddControlJacobian(const SelfTerms<L>& self, const Set& p, const PendulumSt
   by_parameter(2, kKdTheta) = -scale.damping * thd;
   by_parameter(3, kKpPhi) = -scale.stiffness * e_ph;
   by_parameter(3, kKdPhi) = -scale.damping * phd;
-  if (self.cart_derivative) {
-    const Eigen::Matrix<T, 2, 1> rate(scale.force * p[kKdX] / self.dt,
-                                      scale.force * p[kKdY] / self.dt);
-    by_state(0, 4) -= rate[0];
-    by_state(1, 5) -= rate[1];
-    jacobian->by_previous = rate;
-    by_parameter(0, kKdX) = -scale.force * (xd - qd_previous[0]) / self.dt;
-    by_parameter(1, kKdY) = -scale.force * (yd - qd_previous[1]) / self.dt;
-  }
   const L mass = self.body.mass, ml2 = self.PointInertia();
   by_state(0, 2) += mass * p[kAx];
   by_state(0, 6) += mass * p[kBx];

@@ -152,6 +152,21 @@ struct RobustHessian {
   }
 };
 
+// r and J of a frame become those of weight w r. seen: the frame's weight, which is in them.
+template <typename Residual, typename Rows>
+void ApplyRobustLoss(double seen, double weight, double robust, Residual&& residual,
+                     Rows&& jacobian) {
+  if (seen <= 0.0) return;  // nothing was measured: zeros
+  const RobustSlope<double> slope(residual.squaredNorm() / (seen * seen), robust);
+  Eigen::Matrix<double, 1, Eigen::Dynamic> along = residual[0] * jacobian.row(0);
+  for (Eigen::Index i = 1; i < residual.size(); ++i) along += residual[i] * jacobian.row(i);
+  along *= slope.over_w / (seen * seen);
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    jacobian.row(i) = weight * slope.w * (jacobian.row(i) + residual[i] * along);
+  }
+  residual *= weight * slope.w;
+}
+
 template <typename Residual, typename Rows>
 void CorrectForRobustLoss(const Residual& residual, double weight, double robust, Rows&& jacobian) {
   const double squared = residual.squaredNorm();

@@ -99,9 +99,9 @@ constexpr int kPreviousAt = 6, kFreeState = 8;
 Eigen::MatrixXd LearnedForce(const LearnedTerms& network, const SelfForce& self) {
   constexpr double kDifference = 1e-5;
   const auto force = [&](const Eigen::VectorXd& from) {
-    NetworkState<double> memory(network.shape, self.body);
+    NetworkState<double> memory(network.shape, network.weights.data(), self.body);
     SetMotionInputs<double>(from[0], from[1], from.segment<4>(2), &memory.inputs);
-    return StepNetwork(network.shape, network.weights.data(), self.body.mass, &memory);
+    return StepNetwork(network.shape, network.weights.data(), &memory);
   };
   Eigen::MatrixXd jacobian(4, kFreeState);
   for (int i = 0; i < kFreeState; ++i) {

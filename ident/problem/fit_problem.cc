@@ -246,10 +246,10 @@ namespace {
 std::vector<FailedRollout> FailuresOf(const std::vector<RolloutAt>& rollouts,
                                       const std::vector<SideBySide>& side_by_side) {
   std::vector<FailedRollout> failures;
-  const std::vector<RolloutSums> sums = SumUp(side_by_side, rollouts, LaneSums::kSquares);
+  const auto sums = SumUp(side_by_side, rollouts, LaneSums::kSquares);
   for (size_t i = 0; i < rollouts.size(); ++i) {
     const auto& [problem, blocks] = rollouts[i];
-    if (problem == nullptr || sums[i].ok) continue;
+    if (problem == nullptr || sums[i][0].ok) continue;
     RolloutPath<double> path;
     const RolloutStatus status = RollOut(*problem, blocks.data(), &path);
     if (!status.ok) failures.push_back({static_cast<int>(i), status});
@@ -394,7 +394,8 @@ FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_netw
   AddPriors(*this, point, false, &built);
   AddPooling(*this, point, &built);
   if (options_.network_prior > 0.0 && map_.num_weights > 0) {
-    built.Add(std::make_unique<RidgeResidual>(map_.num_weights, options_.network_prior),
+    built.Add(std::make_unique<PriorResidual>(map_.num_weights, 0, 0.0, options_.network_prior,
+                                              map_.num_weights),
               {point->weights.data()}, kNetworkCluster);
   }
   if (horizon != 0) {

@@ -8,11 +8,20 @@
 #include "residuals/cost_functions/condensed_rollout.h"
 
 namespace pushid {
+namespace {
+
+LaneSums SumsWanted(bool with_jacobians) {
+  return with_jacobians ? LaneSums::kPlain : LaneSums::kSquares;
+}
+
+}  // namespace
 
 class ParallelEvaluation::Prepared : public ceres::CostFunction {
  public:
   Prepared(std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& blocks)
-      : cost_(std::move(cost)), blocks_(blocks) {
+      : cost_(std::move(cost)),
+        rollout_(dynamic_cast<const CondensedRollout*>(cost_.get())),
+        blocks_(blocks) {
     set_num_residuals(cost_->num_residuals());
     *mutable_parameter_block_sizes() = cost_->parameter_block_sizes();
     residuals_.resize(num_residuals());
@@ -22,6 +31,11 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
   // Evaluates at the blocks' present values; constant blocks get no derivatives.
   void Prepare(bool with_jacobians, const ceres::Problem& problem) {
     if (IsPrepared(with_jacobians)) return;
+    if (rollout_ != nullptr) {
+      const bool weights_held = problem.IsParameterBlockConstant(blocks_.back());
+      return Prepare(rollout_->SumsAt(blocks_.data(), SumsWanted(with_jacobians), weights_held),
+                     with_jacobians);
+    }
     std::vector<double*> jacobians(blocks_.size(), nullptr);
     for (size_t b = 0; with_jacobians && b < blocks_.size(); ++b) {
       const bool constant = problem.IsParameterBlockConstant(blocks_[b]);
@@ -32,25 +46,27 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
     ok_ = cost_->Evaluate(blocks_.data(), residuals_.data(),
                           with_jacobians ? jacobians.data() : nullptr);
   }
-  // A rollout in lanes is prepared by its sums; its rows are made when Ceres asks for them.
+  // A rollout is prepared by its sums; its rows are made when Ceres asks for them.
   void Prepare(RolloutSums sums, bool with_jacobians) {
     sums_ = std::move(sums);
     Remember(with_jacobians);
   }
   bool IsPrepared(bool with_jacobians) const { return Holds(blocks_.data(), with_jacobians); }
   // Null where it is none.
-  const CondensedRollout* rollout() const {
-    return dynamic_cast<const CondensedRollout*>(cost_.get());
-  }
-  const RolloutProblem* in_lanes() const {
-    return rollout() != nullptr ? rollout()->in_lanes() : nullptr;
+  const RolloutProblem* problem() const {
+    return rollout_ != nullptr ? &rollout_->problem() : nullptr;
   }
   const RolloutSums& sums() const { return sums_; }
   double const* const* blocks() const { return blocks_.data(); }
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     bool held = Holds(blocks, jacobians != nullptr);
-    if (held && in_lanes() != nullptr) return rollout()->FillRows(sums_, residuals, jacobians);
+    if (held && rollout_ != nullptr) {
+      const bool asks_held = jacobians != nullptr && jacobians[blocks_.size() - 1] != nullptr &&
+                             sums_.plain.columns() < problem()->layout.num_acting();
+      if (!asks_held) return rollout_->FillRows(sums_, residuals, jacobians);
+      held = false;
+    }
     for (size_t b = 0; held && jacobians != nullptr && b < blocks_.size(); ++b) {
       held = jacobians[b] == nullptr || !jacobians_[b].empty();
     }
@@ -81,12 +97,13 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
   }
 
   std::unique_ptr<ceres::CostFunction> cost_;
+  const CondensedRollout* rollout_;  // the cost, where it is one
   std::vector<double*> blocks_;
   std::vector<double> point_;  // where it was evaluated; empty: nowhere yet
   bool has_jacobians_ = false, ok_ = false;
   std::vector<double> residuals_;
   std::vector<std::vector<double>> jacobians_;  // empty for a constant block
-  RolloutSums sums_;                            // of a rollout in lanes, in place of these
+  RolloutSums sums_;                            // of a rollout, in place of these
 };
 
 std::unique_ptr<ceres::CostFunction> ParallelEvaluation::Wrap(
@@ -102,8 +119,8 @@ ParallelEvaluation::~ParallelEvaluation() = default;
 void ParallelEvaluation::SetTasks() {
   std::map<const RolloutProblem*, Prepared*> in_lanes;
   for (Prepared* prepared : prepared_) {
-    if (prepared->in_lanes() != nullptr) {
-      in_lanes[prepared->in_lanes()] = prepared;
+    if (prepared->problem() != nullptr && HasLanes(*prepared->problem())) {
+      in_lanes[prepared->problem()] = prepared;
     } else {
       tasks_.push_back({{prepared}, nullptr});
     }
@@ -118,7 +135,8 @@ void ParallelEvaluation::SetTasks() {
 
 const RolloutProblem* ParallelEvaluation::ProblemOf(const ceres::CostFunction* cost) {
   const auto* const prepared = dynamic_cast<const Prepared*>(cost);
-  return prepared != nullptr ? prepared->in_lanes() : nullptr;
+  const RolloutProblem* const problem = prepared != nullptr ? prepared->problem() : nullptr;
+  return problem != nullptr && HasLanes(*problem) ? problem : nullptr;
 }
 
 const RolloutSums* ParallelEvaluation::SumsOf(const ceres::CostFunction* cost) {
@@ -138,8 +156,7 @@ void ParallelEvaluation::PrepareForEvaluation(bool evaluate_jacobians, bool) {
       there = there && member->IsPrepared(evaluate_jacobians);
     }
     if (there) return;
-    std::vector<RolloutSums> sums =
-        lanes->Evaluate(blocks, evaluate_jacobians ? LaneSums::kPlain : LaneSums::kSquares);
+    std::vector<RolloutSums> sums = lanes->Evaluate(blocks, SumsWanted(evaluate_jacobians));
     for (size_t m = 0; m < members.size(); ++m) {
       members[m]->Prepare(std::move(sums[m]), evaluate_jacobians);
     }

@@ -18,7 +18,6 @@ namespace pushid {
 namespace {
 
 using Eigen::Index;
-using PersonRows = CondensedRollout::PersonRows;
 
 // Rows of one cost function by the columns that move it.
 struct RowBlock {
@@ -95,8 +94,8 @@ std::vector<RowBlock> RowBlocksOf(const BuiltProblem& built, bool robust) {
     first_column[block] = next;
     next += built.problem->ParameterBlockSize(block);
   }
-  const std::vector<RolloutSums> sums =
-      SumUp(*built.side_by_side, built.rollouts, robust ? LaneSums::kRobust : LaneSums::kPlain);
+  const auto sums = SumUp(*built.side_by_side, built.rollouts,
+                          robust ? LaneSums::kRobust : LaneSums::kPlain, true);
   std::vector<RowBlock> blocks;
   for (const BuiltProblem::Block& from : built.blocks) {
     std::vector<double*> on;
@@ -105,12 +104,14 @@ std::vector<RowBlock> RowBlocksOf(const BuiltProblem& built, bool robust) {
     const auto* rollout = dynamic_cast<const CondensedRollout*>(from.cost);
     const auto* steps = dynamic_cast<const LikelihoodResidual*>(from.cost);
     RowBlock block{from.cluster, {}, std::vector<PersonRows>(1), {}};
-    const bool told = rollout == nullptr ? EvaluateOwnRows(*from.cost, at, &block.people[0])
-                      : rollout->in_lanes() != nullptr
-                          ? rollout->FillPeople({sums[from.cluster]}, robust, &block.people)
-                          : rollout->EvaluatePeople(at.data(), robust, &block.people);
-    if (!told) continue;
-    block.num_rows = rollout != nullptr ? rollout->num_rows() : from.cost->num_residuals();
+    if (rollout != nullptr) {
+      block.people = rollout->RowsOf(sums[from.cluster]);
+      block.num_rows = rollout->problem().num_residuals();
+    } else {
+      if (!EvaluateOwnRows(*from.cost, at, &block.people[0])) continue;
+      block.num_rows = from.cost->num_residuals();
+    }
+    if (block.people.empty()) continue;
     for (size_t n = 0; n < block.people.size(); ++n) {
       for (Index row = 0; row < block.people[n].residuals.size(); ++row) {
         block.person_of_row.push_back(rollout != nullptr ? static_cast<int>(n)
@@ -189,14 +190,10 @@ constexpr double kStep = 1e-5;  // of a column's unit
 
 // By rollout: empty where it leaves the domain, and without a problem.
 ResidualsByRecording ResidualsOf(const std::vector<RolloutAt>& rollouts) {
-  std::vector<RolloutSums> sums = SumUp(PutSideBySide(rollouts), rollouts, LaneSums::kNone);
+  auto sums = SumUp(PutSideBySide(rollouts), rollouts, LaneSums::kNone);
   ResidualsByRecording raw(rollouts.size());
   for (size_t i = 0; i < rollouts.size(); ++i) {
-    const RolloutProblem* const problem = rollouts[i].problem.get();
-    raw[i] = std::move(sums[i].residuals);
-    if (problem == nullptr || HasLanes(*problem)) continue;
-    raw[i].resize(problem->num_residuals());
-    if (!RolloutResiduals(*problem, rollouts[i].blocks.data(), raw[i].data())) raw[i].clear();
+    if (!sums[i].empty() && sums[i][0].ok) raw[i] = std::move(sums[i][0].residuals);
   }
   return raw;
 }
@@ -414,93 +411,52 @@ class RowsOfRecordings {
   std::vector<Column> columns_;           // estimates, then assumptions
 };
 
-// One person's normal equations.
-struct PersonSums {
-  NormalEquations plain, robust;  // robust: with the loss's own Hessian
-  std::vector<NormalEquations> robust_parts;
-  std::vector<Eigen::VectorXd> scores;  // J'r, by part
-};
-
 // A recording's rows, one person after the other, and its parts.
 struct Condensed {
   RowBlock block;
   std::vector<DataPart> parts;
 };
 
-// Raw rows become those of the cost, and add up: with c = sqrt(1 + |r|^2 / d^2), residual and
-// Jacobian of a frame times weight / sqrt(c); the loss's own Hessian has 1 / c of that along r
-// (frame_residual.h).
-Condensed Condense(const FitProblem& problem, const RawRows& rows, Index estimates,
+// Raw rows become those of the cost, and add up, part by part.
+Condensed Condense(const FitProblem& problem, const RawRows& raw, Index estimates,
                    const std::vector<int>& horizons, int recording) {
   const PendulumRecording& r = problem.recordings()[recording];
-  const int columns = static_cast<int>(rows.columns.size()), begin = PushFrame(r);
-  const double weight = problem.Weight(recording, 0), loss = problem.options().sigmas.OfFrames();
-  const NormalEquations none(columns);
-  const size_t num_parts = horizons.size() + 1;
-  std::vector<PersonSums> people(
-      static_cast<size_t>(r.num_people()),
-      {none, none, std::vector(num_parts, none),
-       std::vector<Eigen::VectorXd>(num_parts, Eigen::VectorXd::Zero(columns))});
-  RowMajorMatrix frame =
-      RowMajorMatrix::Zero(kFrameResiduals, NormalEquations::PaddedSize(columns));
-  Eigen::VectorXd residuals;
-  Eigen::RowVectorXd along;
-  Index next = 0;
-  // The next rows, of frame t; seen: how much of it was.
-  const auto add = [&](Index count, double seen, int t, PersonSums* to) {
-    const size_t part = static_cast<size_t>(
-        std::lower_bound(horizons.begin(), horizons.end(), t - begin) - horizons.begin());
-    const auto raw = rows.residuals.segment(next, count);
-    const double squared = raw.squaredNorm();
-    const double whole = seen > 0.0 ? squared / (seen * seen) : 0.0;  // as if all of it counted
-    const double c = loss > 0.0 ? std::sqrt(1.0 + whole / (loss * loss)) : 1.0;
-    const double scale = weight / std::sqrt(c);
-    auto by_column = frame.topLeftCorner(count, columns);
-    by_column = scale * rows.by_column.middleRows(next, count);
-    residuals = scale * raw;
-    to->plain.Add(static_cast<int>(count), frame.data(), residuals.data());
-    if (squared > 0.0) {
-      along.noalias() = raw.transpose() * by_column;
-      to->scores[part] += scale * along.transpose();
-      along *= (1.0 / c - 1.0) / squared;
-      for (Index i = 0; i < count; ++i) by_column.row(i) += raw[i] * along;
-    }
-    to->robust_parts[part].Add(static_cast<int>(count), frame.data(), residuals.data());
-    next += count;
+  const FitOptions& options = problem.options();
+  const int columns = static_cast<int>(raw.columns.size()), begin = PushFrame(r);
+  const int num_parts = static_cast<int>(horizons.size()) + 1;
+  const NormalEquations nothing(columns);
+  const RolloutSums none{true, 0.0, nothing, nothing, {}};
+  std::vector<RolloutSums> sums(static_cast<size_t>(r.num_people() * num_parts), none);
+  std::vector<double> residuals(raw.residuals.data(), raw.residuals.data() + raw.residuals.size());
+  RowMajorMatrix rows =
+      RowMajorMatrix::Zero(raw.by_column.rows(), NormalEquations::PaddedSize(columns));
+  rows.leftCols(columns) = raw.by_column;
+  const auto of_frame = [&](int person, int frame) {
+    const auto part = std::lower_bound(horizons.begin(), horizons.end(), frame - begin);
+    return &sums[static_cast<size_t>(person * num_parts + (part - horizons.begin()))];
   };
-  for (int t = 1; t < r.num_frames(); ++t) {
-    for (int n = 0; n < r.num_people(); ++n) add(kFrameResiduals, r.Weight(n, t), t, &people[n]);
-  }
-  for (int t = 0; t + 1 < r.num_frames(); ++t) {
-    for (int n = 0; n < r.num_people(); ++n) {
-      if (r.HasPlates(n)) add(kPlateResiduals, r.plates[n][t].weight, t, &people[n]);
-    }
-  }
-  const auto beyond = std::lower_bound(rows.columns.begin(), rows.columns.end(), estimates);
-  const std::vector<Index> own(rows.columns.begin(), beyond);
+  AddUpRows(*MakeRolloutProblem(r, options.model, problem.map(), options.sigmas,
+                                problem.Weight(recording, 0), 0),
+            true, LaneSums::kRobust, of_frame, &residuals, &rows);
+  const auto beyond = std::lower_bound(raw.columns.begin(), raw.columns.end(), estimates);
+  const std::vector<Index> own(raw.columns.begin(), beyond);
   const Index count = static_cast<Index>(own.size());
-  Condensed condensed{{recording, rows.columns, {}, {}, static_cast<int>(rows.residuals.size())},
-                      {}};
-  for (PersonSums& person : people) {
-    const int n = static_cast<int>(&person - people.data());
-    for (const NormalEquations& part : person.robust_parts) person.robust.Add(part);
-    const RowMajorMatrix plain = person.plain.Factor();
-    condensed.block.people.push_back(
-        {plain.leftCols(columns), plain.col(columns), person.robust.Factor().leftCols(columns)});
-    condensed.block.person_of_row.insert(condensed.block.person_of_row.end(),
-                                         static_cast<size_t>(columns + 1), n);
-    for (size_t part = 0; part < num_parts; ++part) {
-      const RowMajorMatrix gram =
-          person.robust_parts[part].information().topLeftCorner(count, count);
-      DataPart& of = condensed.parts.emplace_back();
-      of.recording = recording;
-      of.person = n;
-      of.part = static_cast<int>(part);
-      of.score = Eigen::VectorXd::Zero(estimates);
-      of.score(own) = person.scores[part].head(count);
-      of.information = Eigen::MatrixXd::Zero(estimates, estimates);
+  Condensed condensed{{recording, raw.columns, {}, {}, static_cast<int>(residuals.size())}, {}};
+  for (int n = 0; n < r.num_people(); ++n) {
+    RolloutSums all = none;
+    for (int part = 0; part < num_parts; ++part) {
+      const RolloutSums& some = sums[static_cast<size_t>(n * num_parts + part)];
+      all.Add(some);
+      const RowMajorMatrix gram = some.robust.information().topLeftCorner(count, count);
+      DataPart& of = condensed.parts.emplace_back(
+          DataPart{recording, n, part, Eigen::VectorXd::Zero(estimates),
+                   Eigen::MatrixXd::Zero(estimates, estimates)});
+      of.score(own) = some.plain.gradient().head(count);
       of.information(own, own) = Eigen::MatrixXd(gram.selfadjointView<Eigen::Upper>());
     }
+    condensed.block.people.push_back(FewestRows(all));
+    condensed.block.person_of_row.insert(condensed.block.person_of_row.end(),
+                                         static_cast<size_t>(columns + 1), n);
   }
   return condensed;
 }

@@ -181,7 +181,7 @@ bool SummedCost::AddPart(const Part& part, double* squares, SecondOrder* sum) {
   if (part.sums != nullptr) {
     const RolloutSums& sums = *part.sums;
     *squares += sums.squares;
-    const size_t acting = sums.ok && sum != nullptr ? part.of_acting.size() : 0;
+    const size_t acting = sums.ok && sum != nullptr ? sums.plain.columns() : 0;
     for (size_t a = 0; a < acting; ++a) {
       for (int i : part.of_acting[a]) {
         sum->gradient[i] += sums.plain.gradient()[a];

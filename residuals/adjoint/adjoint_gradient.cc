@@ -71,12 +71,6 @@ BatchColumns ColumnsOf(const std::vector<AdjointRecording>& all,
   return BatchColumns(steps);
 }
 
-// Adds the adjoint of [state of n, state of j].
-void AddToBoth(const PairAdjoint& by_states, int n, int j, MatrixXd* by_state) {
-  by_state->col(n) += by_states.head<8>();
-  by_state->col(j) += by_states.tail<8>();
-}
-
 // Forces between people of several recordings, step by step, and back.
 //
 // With f the adjoint of what each of two people gets from the other, F = F_terms + 2 M g y of both,
@@ -131,16 +125,21 @@ class TouchingPeople {
   // by_parameter.
   void Backward(int step, const PeopleNow& now, const MatrixXd& by_received, MatrixXd* by_state,
                 ParameterSet<double>* by_parameter) {
+    if (network_) NetworkBack(step, by_received);
+    int column = 0;
     for (const Contact& c : contacts_[step]) {
       const Vector4<double> by_n = by_received.col(c.n), by_j = by_received.col(c.j);
       const double by_gate = c.learned_n.dot(by_n) + c.learned_j.dot(by_j);
       const bool gated = c.learned() && !options_.learned->pair.ldp;  // LDP's is a hard switch
-      PairAdjoint by_states = PairAdjoint::Zero();
-      PairBack(options_, c.pair, now.parameters[c.first], now.states[c.n], now.states[c.j], by_n,
-               by_j, gated ? &by_gate : nullptr, &by_states, by_parameter);
-      AddToBoth(by_states, c.n, c.j, by_state);
+      const int asked = c.learned() ? 2 : 0;
+      const MatrixXd by_inputs = inputs_.middleCols(column, asked);
+      column += asked;
+      const PairAdjoint by_states =
+          PairBack(options_, c.pair, now.parameters[c.first], now.states[c.n], now.states[c.j],
+                   by_n, by_j, gated ? &by_gate : nullptr, by_inputs, by_parameter);
+      by_state->col(c.n) += by_states.head<8>();
+      by_state->col(c.j) += by_states.tail<8>();
     }
-    if (network_) NetworkBack(step, by_received, by_state);
   }
 
   // After the last of these: adds d(cost)/d(weights), of all that is learned.
@@ -212,7 +211,8 @@ class TouchingPeople {
     }
   }
 
-  void NetworkBack(int step, const MatrixXd& by_received, MatrixXd* by_state) {
+  // To the adjoints of the network's inputs, in inputs_.
+  void NetworkBack(int step, const MatrixXd& by_received) {
     const std::vector<Contact>& contacts = contacts_[step];
     const auto asked = std::count_if(contacts.begin(), contacts.end(),
                                      [](const Contact& c) { return c.learned(); });
@@ -225,12 +225,6 @@ class TouchingPeople {
       outputs_.col(column++) = shape.ForceUnit(c.pair.body_j) * c.gate * by_received.col(c.j);
     }
     network_->Backward(step, outputs_, &inputs_);
-    column = 0;
-    for (const Contact& c : contacts) {
-      if (!c.learned()) continue;
-      AddToBoth(PairInputsBack(inputs_.col(column++)), c.n, c.j, by_state);
-      AddToBoth(PairInputsBack(inputs_.col(column++)), c.j, c.n, by_state);
-    }
   }
 
   const ModelOptions& options_;
@@ -246,8 +240,9 @@ class AdjointGradient::Batch {
  public:
   // recordings: indices into `all`; those of more frames first.
   Batch(const std::vector<AdjointRecording>& all, const std::vector<int>& recordings,
-        const ModelOptions& options, const ResidualSigmas& sigmas)
+        const ModelOptions& options, const ParameterMap& map, const ResidualSigmas& sigmas)
       : options_(options), sigmas_(sigmas), columns_(ColumnsOf(all, recordings)) {
+    for (const ColumnEntry& entry : map.Entries(map.values)) acting_.push_back(entry.parameter);
     std::vector<double> masses;
     std::vector<const Scene*> scenes;
     for (int index : recordings) {
@@ -464,7 +459,7 @@ class AdjointGradient::Batch {
     }
     PersonBack({walker.scene(), options_, walker.self, Parameters(column), walker.person, step,
                 state, walker.VelocityBefore(step)},
-               walker.acceleration[step], f, by_rod != nullptr ? &seen : nullptr, adjoint,
+               walker.acceleration[step], f, by_rod != nullptr ? &seen : nullptr, acting_, adjoint,
                by_parameter);
     if (step == 0) {  // there the velocity before is that of the frame itself
       adjoint->state.segment<2>(4) += adjoint->before;
@@ -511,6 +506,7 @@ class AdjointGradient::Batch {
 
   const ModelOptions options_;
   const ResidualSigmas sigmas_;
+  std::vector<Parameter> acting_;  // those that are fitted
   std::vector<Walker> walkers_;
   std::vector<int> horizon_, end_;  // by place: frames to roll out, and those that count
   BatchColumns columns_;
@@ -550,7 +546,8 @@ Result<AdjointGradient> AdjointGradient::Create(const std::vector<AdjointRecordi
       people += recordings[order[begin]].recording->num_people();
       together.push_back(order[begin++]);
     }
-    gradient.batches_.push_back(std::make_unique<Batch>(recordings, together, options, sigmas));
+    gradient.batches_.push_back(
+        std::make_unique<Batch>(recordings, together, options, map, sigmas));
   }
   return gradient;
 }

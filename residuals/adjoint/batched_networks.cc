@@ -43,7 +43,7 @@ BatchedNetwork::BatchedNetwork(const NetworkShape& shape, const BatchColumns& co
   const int people = static_cast<int>(masses.size()), total = columns_.total();
   for (int n = 0; n < people; ++n) {
     scale_[n] = shape.ForceUnit(masses[n]);
-    own_.col(n) = NetworkState<double>(shape, Body{masses[n]}).context;
+    own_.col(n) = NetworkContext(Body{masses[n]});
     context_.col(n) = shape.GateContext(own_.col(n));
   }
   const int rows = shape.gate_rows();

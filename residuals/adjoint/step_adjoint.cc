@@ -3,8 +3,6 @@
 
 #include <ceres/jet.h>
 
-#include "residuals/force_jacobians.h"
-
 namespace pushid {
 namespace {
 
@@ -26,76 +24,60 @@ PosedPendulum<Jet> Inputs(const PendulumState<double>& state, int first) {
   return inputs;
 }
 
-// Derivatives of SelfForce::Effort.
-SelfJacobian<double> EffortJacobian(const PersonStep& s) {
-  SelfJacobian<double> jacobian;
-  AddControlJacobian(s.self, s.p, s.state, s.before, &jacobian);
-  int column = kFirstOwnParameter;
-  for (const auto& law : s.self.laws) {
-    const int own = static_cast<int>(law->parameters().size());
-    ForceLaw::Inputs inputs = ForceLaw::Inputs::Zero();
-    inputs.head<8>() << s.state.q, s.state.qd;
-    for (int i = 0; i < own; ++i) inputs[8 + i] = s.p[column + i];
-    ForceLaw::Jacobian by_input;
-    law->Force({s.self.body, s.self.posture}, inputs, &by_input);
-    jacobian.by_state += by_input.leftCols<8>();
-    jacobian.by_parameter.middleCols(column, own) += by_input.middleCols(8, own);
-    column += own;
-  }
-  return jacobian;
-}
-
-// Derivatives of NetForceAt (models/step.h).
-SelfJacobian<double> ForceJacobian(const PersonStep& s) {
-  SelfJacobian<double> jacobian;
-  const ActiveForces active = ForcesAt(s.scene, s.options.push, s.person, s.frame);
-  if (active == ActiveForces::kAll) {
-    jacobian = EffortJacobian(s);
-    for (const ScenePush& push : s.scene.pushes) {
-      if (push.person != s.person || !HasTail(s.options) || !TailActs(push, s.frame)) continue;
-      const TailOf<double> tail = TailAt(push, s.self.body.mass, s.frame, s.scene.dt);
-      const double rate = tail.Rate(s.p);
-      AddTailJacobian(tail, s.p, rate, tail.Decay(rate), &jacobian.by_parameter);
-    }
-  }
-  if (active != ActiveForces::kPushOnly) {
-    AddFrictionJacobian(s.self, s.p, s.state.qd, &jacobian);
-  }
-  return jacobian;
-}
-
-void AddBack(const SelfJacobian<double>& jacobian, const Vector4<double>& by_force,
-             StateAdjoint* adjoint, ParameterSet<double>* by_parameter) {
-  adjoint->state += jacobian.by_state.transpose() * by_force;
-  adjoint->before += jacobian.by_previous.cwiseProduct(by_force.head<2>());
-  Eigen::Map<Eigen::Matrix<double, kNumParameters, 1>>(by_parameter->data()) +=
-      jacobian.by_parameter.transpose() * by_force;
-}
-
 }  // namespace
 
 void PersonBack(const PersonStep& s, const Vector4<double>& acceleration,
                 const Vector4<double>& by_force, const Vector4<double>* by_effort,
-                StateAdjoint* adjoint, ParameterSet<double>* by_parameter) {
-  SelfJacobian<double> jacobian = ForceJacobian(s);
-  const Matrix4<double> rigid = InverseDynamicsJacobian<double>(
-      BodyNow(s.self.body, s.state.rod), Angles<double>(s.state.q), s.state.qd, acceleration);
-  jacobian.by_state.middleCols<2>(2) -= rigid.leftCols<2>();
-  jacobian.by_state.middleCols<2>(6) -= rigid.rightCols<2>();
-  AddBack(jacobian, by_force, adjoint, by_parameter);
-  if (by_effort == nullptr) return;  // of a rod that does not move
-  AddBack(EffortJacobian(s), *by_effort, adjoint, by_parameter);
-  using Jet = ceres::Jet<double, 1>;
-  const PendulumState<Jet> state{s.state.q.cast<Jet>(), s.state.qd.cast<Jet>()};
-  const BodyOf<Jet> body = BodyNow<Jet>(s.self.body, Jet(s.state.rod, 0));
-  const Vector4<Jet> needed = InverseDynamics(body, state, Vector4<Jet>(acceleration.cast<Jet>()));
-  adjoint->rod -= Dot<Jet>(by_force, needed).v[0];
+                const std::vector<Parameter>& acting, StateAdjoint* adjoint,
+                ParameterSet<double>* by_parameter) {
+  using Jet = VectorJet;
+  // Inputs: [q, qd], the rod, the cart's velocity before, parameters; a jet's columns at a time.
+  constexpr int kRodAt = 8, kBeforeAt = 9, kParametersAt = 11;
+  const int columns = kParametersAt + static_cast<int>(acting.size());
+  for (int first = 0; first < columns; first += Jet::kColumns) {
+    const auto has = [first](int column) {
+      return first <= column && column < first + Jet::kColumns;
+    };
+    const auto input = [&](double value, int column) {
+      return has(column) ? Jet::Input(value, column - first) : Jet(value);
+    };
+    PendulumState<Jet> state;
+    Vector4<Jet> before = s.before.cast<Jet>();
+    ParameterSet<Jet> p;
+    for (int i = 0; i < 4; ++i) {
+      state.q[i] = input(s.state.q[i], i);
+      state.qd[i] = input(s.state.qd[i], 4 + i);
+      if (i < 2) before[i] = input(s.before[i], kBeforeAt + i);
+    }
+    state.rod = input(s.state.rod, kRodAt);
+    for (int i = 0; i < kNumParameters; ++i) p[i] = Jet(s.p[i]);
+    for (int column = kParametersAt; column < columns; ++column) {
+      const Parameter id = acting[column - kParametersAt];
+      p[id] = input(s.p[id], column);
+    }
+    const Vector4<Jet> force =
+        NetForceAt<Jet>(s.scene, s.options, s.self, p, s.person, s.frame, state, before).Total();
+    const Vector4<Jet> needed = InverseDynamics<Jet>(BodyNow<Jet>(s.self.body, state.rod), state,
+                                                     acceleration.cast<Jet>().eval());
+    Jet sum = Dot<Jet>(by_force, force) - Dot<Jet>(by_force, needed);
+    if (by_effort != nullptr) sum += Dot<Jet>(*by_effort, s.self.Effort(p, state, before));
+    const auto add = [&](int column, double* to) {
+      if (has(column)) *to += sum.Slope(column - first);
+    };
+    for (int i = 0; i < 8; ++i) add(i, &adjoint->state[i]);
+    add(kRodAt, &adjoint->rod);
+    for (int i = 0; i < 2; ++i) add(kBeforeAt + i, &adjoint->before[i]);
+    for (int column = kParametersAt; column < columns; ++column) {
+      add(column, &(*by_parameter)[acting[column - kParametersAt]]);
+    }
+  }
 }
 
-void PairBack(const ModelOptions& options, const Pair& pair, const ParameterSet<double>& p,
-              const PendulumState<double>& n, const PendulumState<double>& j,
-              const Vector4<double>& by_n, const Vector4<double>& by_j, const double* by_gate,
-              PairAdjoint* by_states, ParameterSet<double>* by_parameter) {
+PairAdjoint PairBack(const ModelOptions& options, const Pair& pair, const ParameterSet<double>& p,
+                     const PendulumState<double>& n, const PendulumState<double>& j,
+                     const Vector4<double>& by_n, const Vector4<double>& by_j,
+                     const double* by_gate, const Eigen::MatrixXd& by_inputs,
+                     ParameterSet<double>* by_parameter) {
   using Jet = ceres::Jet<double, 16 + kNumPairParameters>;
   const PosedPendulum<Jet> a = Inputs<Jet>(n, 0), b = Inputs<Jet>(j, 8);
   ParameterSet<Jet> parameters;
@@ -108,19 +90,14 @@ void PairBack(const ModelOptions& options, const Pair& pair, const ParameterSet<
   if (by_gate != nullptr) {
     sum += *by_gate * PairGate<Jet>(options.learned->pair, pair, parameters, a.q, b.q);
   }
-  *by_states += sum.v.head<16>();
+  for (Eigen::Index k = 0; k < by_inputs.cols(); ++k) {
+    const VectorX<Jet> inputs = k == 0 ? PairInputs<Jet>(a, b) : PairInputs<Jet>(b, a);
+    for (int i = 0; i < PairShape::kInputs; ++i) sum += by_inputs(i, k) * inputs[i];
+  }
   for (int i = 0; i < kNumPairParameters; ++i) {
     (*by_parameter)[kFirstPairParameter + i] += sum.v[16 + i];
   }
-}
-
-PairAdjoint PairInputsBack(const VectorX<double>& by_inputs) {
-  using Jet = ceres::Jet<double, 16>;
-  const PendulumState<double> at;  // any: the inputs are linear
-  const VectorX<Jet> inputs = PairInputs<Jet>(Inputs<Jet>(at, 0), Inputs<Jet>(at, 8));
-  PairAdjoint by_states = PairAdjoint::Zero();
-  for (int i = 0; i < PairShape::kInputs; ++i) by_states += by_inputs[i] * inputs[i].v;
-  return by_states;
+  return sum.v.head<16>();
 }
 
 void FrameBack(const Body& body, const PendulumState<double>& state, const MeasuredFrame& measured,

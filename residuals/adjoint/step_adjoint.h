@@ -1,11 +1,12 @@
 // residuals: one step of the model backwards: from the adjoints of what it made to those of what it
 // was made of. With the outputs y, the inputs x and y^ = d(cost)/dy,
 //   x^ = (dy/dx)' y^ = d(y^ . y)/dx:
-// of a person by the derivatives that are written out (force_jacobians.h), of everything else the
-// derivatives of one number, by jets through the model's own templates. All add to what is there.
+// the derivatives of one number, by jets through the model's own templates. All add to what is
+// there.
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "models/learned_terms.h"
 #include "models/step.h"
@@ -32,22 +33,23 @@ struct PersonStep {
 };
 
 // by_force: the adjoint of the net force, which gave the person this acceleration; by_effort: that
-// of SelfForce::Effort, null where nothing sees it.
+// of SelfForce::Effort, null where nothing sees it. acting: the parameters of which one is asked
+// for.
 void PersonBack(const PersonStep& step, const Vector4<double>& acceleration,
                 const Vector4<double>& by_force, const Vector4<double>* by_effort,
-                StateAdjoint* adjoint, ParameterSet<double>* by_parameter);
+                const std::vector<Parameter>& acting, StateAdjoint* adjoint,
+                ParameterSet<double>* by_parameter);
 
 // Two people who act on each other: by_n and by_j, the adjoints of what each gets; by_gate: that of
-// the gate of what is learned (PairGate), null where it does not act. by_states: [q, qd] of n, then
-// of j.
+// the gate of what is learned (PairGate), null where it does not act; by_inputs: those of what a
+// learned interaction sees (PairInputs), of n who meets j and of j who meets n, no columns where it
+// is not asked. Returns those of [q, qd] of n, then of j.
 using PairAdjoint = Eigen::Matrix<double, 16, 1>;
-void PairBack(const ModelOptions& options, const Pair& pair, const ParameterSet<double>& p,
-              const PendulumState<double>& n, const PendulumState<double>& j,
-              const Vector4<double>& by_n, const Vector4<double>& by_j, const double* by_gate,
-              PairAdjoint* by_states, ParameterSet<double>* by_parameter);
-
-// The inputs of a learned interaction, of n who meets j (PairInputs).
-PairAdjoint PairInputsBack(const VectorX<double>& by_inputs);
+PairAdjoint PairBack(const ModelOptions& options, const Pair& pair, const ParameterSet<double>& p,
+                     const PendulumState<double>& n, const PendulumState<double>& j,
+                     const Vector4<double>& by_n, const Vector4<double>& by_j,
+                     const double* by_gate, const Eigen::MatrixXd& by_inputs,
+                     ParameterSet<double>* by_parameter);
 
 // Half the squared residual of a person at a frame, times weight squared.
 void FrameBack(const Body& body, const PendulumState<double>& state, const MeasuredFrame& measured,

@@ -34,48 +34,83 @@ bool SameLanes(const RolloutProblem& a, const RolloutProblem& b) {
                     });
 }
 
-// Sums over the rows of a recording by jets, by the columns of `inputs`, which may be none: of each
-// person, or of all where there is one sum. False outside the model's domain.
-bool SumUpRows(const RolloutProblem& p, const SensitivityInputs& inputs, int columns,
-               LaneSums wanted, std::vector<RolloutSums>* sums) {
+// By the acting columns; of a rollout in no group.
+std::vector<RolloutSums> SumUpByJets(const RolloutProblem& p, double const* const* blocks,
+                                     LaneSums wanted, bool by_person, bool weights_held) {
+  if (wanted == LaneSums::kNone) {
+    RolloutProblem raw = p;
+    raw.sigmas.robust = 0.0;
+    RolloutSums sums;
+    sums.residuals.resize(raw.num_residuals());
+    sums.ok = RolloutResiduals(raw, blocks, sums.residuals.data());
+    return {std::move(sums)};
+  }
   // A thread's own, used again: asking the system for them each time costs a tenth of a rollout.
   thread_local std::vector<double> residuals;
   thread_local RowMajorMatrix rows;
-  if (!RowsByJets(p, inputs, &residuals, &rows).ok) return false;
-  for (RolloutSums& sum : *sums) {
-    sum.ok = true;
-    sum.plain = sum.robust = NormalEquations(columns);
+  SensitivityInputs inputs = RolloutInputs(p.recording->scene, p.map, p.layout, blocks);
+  int columns = p.layout.num_acting();
+  if (wanted == LaneSums::kSquares) {
+    columns = inputs.num_columns = 0;
+  } else if (weights_held && p.map.num_weights > 0) {
+    columns -= p.map.num_weights;
+    inputs.num_columns = NormalEquations::PaddedSize(columns);
+    inputs.weight_column = -1;
   }
-  int row = 0;
-  // weight: on all of the rows, which the robust loss does not see.
-  const auto add = [&](int person, int count, double weight) {
-    RolloutSums& sum = (*sums)[sums->size() == 1 ? 0 : person];
-    const Eigen::Map<const Eigen::VectorXd> r(residuals.data() + row, count);
-    Eigen::Map<RowMajorMatrix> by_column(rows.data() + static_cast<size_t>(row) * rows.cols(),
-                                         count, rows.cols());
+  RolloutSums none;
+  none.ok = RowsByJets(p, inputs, &residuals, &rows).ok;
+  none.plain = NormalEquations(columns);
+  if (wanted == LaneSums::kRobust) none.robust = none.plain;
+  std::vector<RolloutSums> sums(by_person ? p.recording->num_people() : 1, none);
+  if (!none.ok) return sums;
+  const auto to = [&](int person, int) { return &sums[by_person ? person : 0]; };
+  AddUpRows(p, false, wanted, to, &residuals, &rows);
+  return sums;
+}
+
+}  // namespace
+
+void RolloutSums::Add(const RolloutSums& other) {
+  squares += other.squares;
+  plain.Add(other.plain);
+  robust.Add(other.robust);
+}
+
+void AddUpRows(const RolloutProblem& p, bool raw, LaneSums wanted, const SumsOfFrame& to,
+               std::vector<double>* residuals, RowMajorMatrix* rows) {
+  const double robust = p.sigmas.OfFrames();
+  Eigen::Index row = 0;
+  // seen: how much of the frame was, which the robust loss does not see.
+  const auto add = [&](RolloutSums* sum, int count, double seen) {
+    Eigen::Map<Eigen::VectorXd> r(residuals->data() + row, count);
+    Eigen::Map<RowMajorMatrix> by_column(rows->data() + row * rows->cols(), count, rows->cols());
     row += count;
-    if (wanted == LaneSums::kSquares) {
-      sum.squares += r.squaredNorm();
-      return;
-    }
-    sum.plain.Add(count, by_column.data(), r.data());
+    if (raw) ApplyRobustLoss(seen, p.weight, robust, r, by_column);
+    sum->squares += r.squaredNorm();
+    if (wanted == LaneSums::kSquares) return;
+    sum->plain.Add(count, by_column.data(), r.data());
     if (wanted != LaneSums::kRobust) return;
-    CorrectForRobustLoss(r, weight, p.sigmas.OfFrames(), by_column);
-    sum.robust.Add(count, by_column.data(), r.data());
+    CorrectForRobustLoss(r, p.weight * seen, robust, by_column);
+    sum->robust.Add(count, by_column.data(), r.data());
   };
   for (int t = 1; t < p.horizon; ++t) {
     for (int n = 0; n < p.recording->num_people(); ++n) {
-      add(n, kFrameResiduals, p.weight * p.recording->Weight(n, t));
+      add(to(n, t), kFrameResiduals, p.recording->Weight(n, t));
     }
   }
   const std::vector<int> on_plates = p.PeopleOnPlates();
   for (int t = 0; t + 1 < p.horizon; ++t) {
-    for (int n : on_plates) add(n, kPlateResiduals, p.weight * p.recording->plates[n][t].weight);
+    for (int n : on_plates) add(to(n, t), kPlateResiduals, p.recording->plates[n][t].weight);
   }
-  return true;
 }
 
-}  // namespace
+PersonRows FewestRows(const RolloutSums& sums) {
+  const int columns = sums.plain.columns();
+  const RowMajorMatrix factor = sums.plain.Factor();
+  PersonRows rows{factor.leftCols(columns), factor.col(columns), {}};
+  if (sums.robust.columns() > 0) rows.robust_jacobian = sums.robust.Factor().leftCols(columns);
+  return rows;
+}
 
 bool HasLanes(const RolloutProblem& problem) {
   return problem.derivatives == DerivativesBy::kAuto &&
@@ -165,14 +200,22 @@ std::vector<SideBySide> PutSideBySide(const std::vector<RolloutAt>& rollouts) {
   return groups;
 }
 
-std::vector<RolloutSums> SumUp(const std::vector<SideBySide>& groups,
-                               const std::vector<RolloutAt>& rollouts, LaneSums sums) {
-  std::vector<RolloutSums> all(rollouts.size());
+std::vector<std::vector<RolloutSums>> SumUp(const std::vector<SideBySide>& groups,
+                                            const std::vector<RolloutAt>& rollouts, LaneSums wanted,
+                                            bool by_person) {
+  std::vector<std::vector<RolloutSums>> all(rollouts.size());
   for (const SideBySide& group : groups) {
     std::vector<double const* const*> at;
     for (int i : group.members) at.push_back(rollouts[i].blocks.data());
-    std::vector<RolloutSums> some = group.lanes.Evaluate(at, sums);
-    for (size_t k = 0; k < some.size(); ++k) all[group.members[k]] = std::move(some[k]);
+    std::vector<RolloutSums> some = group.lanes.Evaluate(at, wanted);
+    for (size_t k = 0; k < some.size(); ++k) {
+      all[group.members[k]].push_back(std::move(some[k]));
+    }
+  }
+  for (size_t i = 0; i < rollouts.size(); ++i) {
+    const auto& [problem, blocks] = rollouts[i];
+    if (problem == nullptr || !all[i].empty()) continue;
+    all[i] = SumUpByJets(*problem, blocks.data(), wanted, by_person, false);
   }
   return all;
 }
@@ -183,31 +226,21 @@ CondensedRollout::CondensedRollout(std::shared_ptr<const RolloutProblem> problem
   set_num_residuals(problem_->layout.num_acting() + 1);
 }
 
-RolloutSums CondensedRollout::Alone(double const* const* blocks, LaneSums sums) const {
-  if (alone_ == nullptr) alone_ = std::make_unique<LaneGroup>(std::vector{problem_.get()});
-  return alone_->Evaluate({blocks}, sums)[0];
-}
-
 bool CondensedRollout::Evaluate(double const* const* blocks, double* residuals,
                                 double** jacobians) const {
-  if (in_lanes() != nullptr) {
-    const LaneSums wanted = jacobians != nullptr ? LaneSums::kPlain : LaneSums::kSquares;
-    return FillRows(Alone(blocks, wanted), residuals, jacobians);
+  const bool derivatives = jacobians != nullptr;
+  const bool weights_held = derivatives && jacobians[problem_->layout.num_blocks() - 1] == nullptr;
+  return FillRows(SumsAt(blocks, derivatives ? LaneSums::kPlain : LaneSums::kSquares, weights_held),
+                  residuals, jacobians);
+}
+
+RolloutSums CondensedRollout::SumsAt(double const* const* blocks, LaneSums wanted,
+                                     bool weights_held) const {
+  if (!HasLanes(*problem_)) {
+    return SumUpByJets(*problem_, blocks, wanted, false, weights_held)[0];
   }
-  const RolloutProblem& p = *problem_;
-  SensitivityInputs inputs = RolloutInputs(p.recording->scene, p.map, p.layout, blocks);
-  int columns = p.layout.num_acting();
-  if (jacobians == nullptr) {
-    columns = inputs.num_columns = 0;
-  } else if (p.map.num_weights > 0 && jacobians[p.layout.num_blocks() - 1] == nullptr) {
-    columns -= p.map.num_weights;  // which are held
-    inputs.num_columns = NormalEquations::PaddedSize(columns);
-    inputs.weight_column = -1;
-  }
-  std::vector<RolloutSums> sums(1);
-  return SumUpRows(p, inputs, columns, jacobians != nullptr ? LaneSums::kPlain : LaneSums::kSquares,
-                   &sums) &&
-         FillRows(sums[0], residuals, jacobians);
+  if (alone_ == nullptr) alone_ = std::make_unique<LaneGroup>(std::vector{problem_.get()});
+  return alone_->Evaluate({blocks}, wanted)[0];
 }
 
 bool CondensedRollout::FillRows(const RolloutSums& sums, double* residuals,
@@ -229,29 +262,15 @@ bool CondensedRollout::FillRows(const RolloutSums& sums, double* residuals,
   return true;
 }
 
-bool CondensedRollout::FillPeople(const std::vector<RolloutSums>& sums, bool robust,
-                                  std::vector<PersonRows>* people) const {
-  people->clear();
+std::vector<PersonRows> CondensedRollout::RowsOf(const std::vector<RolloutSums>& sums) const {
+  std::vector<PersonRows> people;
   for (const RolloutSums& sum : sums) {
-    if (!sum.ok) return false;
-    const int acting = sum.plain.columns();
-    const RowMajorMatrix factor = sum.plain.Factor();
-    people->push_back({columns_.Expand(factor.leftCols(acting)), factor.col(acting), {}});
-    if (!robust) continue;
-    people->back().robust_jacobian = columns_.Expand(sum.robust.Factor().leftCols(acting));
+    if (!sum.ok) return {};
+    PersonRows& rows = people.emplace_back(FewestRows(sum));
+    rows.jacobian = columns_.Expand(rows.jacobian);
+    if (sum.robust.columns() > 0) rows.robust_jacobian = columns_.Expand(rows.robust_jacobian);
   }
-  return true;
-}
-
-bool CondensedRollout::EvaluatePeople(double const* const* blocks, bool robust,
-                                      std::vector<PersonRows>* people) const {
-  const LaneSums wanted = robust ? LaneSums::kRobust : LaneSums::kPlain;
-  if (in_lanes() != nullptr) return FillPeople({Alone(blocks, wanted)}, robust, people);
-  const RolloutProblem& p = *problem_;
-  std::vector<RolloutSums> sums(num_people());
-  return SumUpRows(p, RolloutInputs(p.recording->scene, p.map, p.layout, blocks),
-                   p.layout.num_acting(), wanted, &sums) &&
-         FillPeople(sums, robust, people);
+  return people;
 }
 
 }  // namespace pushid

@@ -14,6 +14,7 @@
 
 #include <ceres/cost_function.h>
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -22,6 +23,32 @@
 
 namespace pushid {
 
+// What is summed up of a rollout, or of one person in it. Covariance, verdict, horizons, profiles
+// and the solver make all that they ask of rows from these sums.
+struct RolloutSums {
+  bool ok = false;                // stayed within the domain
+  double squares = 0.0;           // r'r; all there is without derivatives
+  NormalEquations plain, robust;  // robust: with the robust loss's own Hessian, where asked for
+  std::vector<double> residuals;  // where nothing was to be summed up (LaneSums::kNone)
+
+  void Add(const RolloutSums& other);
+};
+
+// Adds the rows of a rollout up, each frame where `to` says. residuals, rows: those of all frames,
+// in the order of RolloutResidual, by as many columns as the sums have, padded; overwritten. raw:
+// they are without the robust loss and the recording's weight, which they get here.
+using SumsOfFrame = std::function<RolloutSums*(int person, int frame)>;
+void AddUpRows(const RolloutProblem& problem, bool raw, LaneSums wanted, const SumsOfFrame& to,
+               std::vector<double>* residuals, RowMajorMatrix* rows);
+
+// As many rows as there are columns, and one, that have the sums of all (normal_equations.h).
+struct PersonRows {
+  RowMajorMatrix jacobian;
+  Eigen::VectorXd residuals;
+  RowMajorMatrix robust_jacobian;  // with the robust loss's own Hessian (frame_residual.h)
+};
+PersonRows FewestRows(const RolloutSums& sums);
+
 // Recordings of people alone, rolled out and summed up side by side (person_lanes.h).
 //
 // A recording's numbers do not depend on those beside it, nor on how many these are, to the last
@@ -29,14 +56,6 @@ namespace pushid {
 
 // Whether a recording can be rolled out so.
 bool HasLanes(const RolloutProblem& problem);
-
-// Sums over a rollout's residuals.
-struct RolloutSums {
-  bool ok = false;                // stayed within the domain
-  double squares = 0.0;           // r'r; all there is without derivatives
-  NormalEquations plain, robust;  // robust: with the robust loss's own Hessian, where asked for
-  std::vector<double> residuals;  // where nothing was to be summed up
-};
 
 class LaneGroup {
  public:
@@ -65,44 +84,33 @@ struct SideBySide {
 };
 // Rollouts that have lanes, as many together as fit; the others are in no group.
 std::vector<SideBySide> PutSideBySide(const std::vector<RolloutAt>& rollouts);
-// By rollout, as they were put; not ok where one is in no group.
-std::vector<RolloutSums> SumUp(const std::vector<SideBySide>& groups,
-                               const std::vector<RolloutAt>& rollouts, LaneSums sums);
+
+// By rollout, nothing where it is not wanted: the sums of each person, or of all in one. Rollouts
+// that are in no group go by jets. kNone: of all in one.
+std::vector<std::vector<RolloutSums>> SumUp(const std::vector<SideBySide>& groups,
+                                            const std::vector<RolloutAt>& rollouts, LaneSums wanted,
+                                            bool by_person = false);
 
 class CondensedRollout : public ceres::CostFunction {
  public:
   explicit CondensedRollout(std::shared_ptr<const RolloutProblem> problem);
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
-
-  // One person's rows, condensed: as many for each.
-  struct PersonRows {
-    RowMajorMatrix jacobian;  // by all columns of the blocks, side by side
-    Eigen::VectorXd residuals;
-    RowMajorMatrix robust_jacobian;  // with the robust loss's own Hessian (frame_residual.h)
-  };
-  // One for each person; robust: with robust_jacobian, which is empty otherwise. False when the
-  // rollout leaves the domain.
-  bool EvaluatePeople(double const* const* blocks, bool robust,
-                      std::vector<PersonRows>* people) const;
   const RolloutProblem& problem() const { return *problem_; }
-  int num_people() const { return problem_->recording->num_people(); }
-  int num_rows() const { return problem_->num_residuals(); }  // before they were condensed
 
-  // The problem, where it has lanes and they are to be used; null otherwise.
-  const RolloutProblem* in_lanes() const { return HasLanes(*problem_) ? problem_.get() : nullptr; }
-  // The outputs of Evaluate and EvaluatePeople from sums that were computed before.
+  // By acting column; weights_held: without those of learned weights.
+  RolloutSums SumsAt(double const* const* blocks, LaneSums wanted, bool weights_held) const;
+  // The outputs of Evaluate. False where the rollout left the domain.
   bool FillRows(const RolloutSums& sums, double* residuals, double** jacobians) const;
-  bool FillPeople(const std::vector<RolloutSums>& sums, bool robust,
-                  std::vector<PersonRows>* people) const;
+  // One for each of the sums, by all columns of the blocks, side by side; none where the rollout
+  // left the domain.
+  std::vector<PersonRows> RowsOf(const std::vector<RolloutSums>& sums) const;
 
  private:
-  // Sums of the recording, where it has lanes, in a group of its own that is laid out at the first
-  // call. Ceres evaluates a block from one thread at a time.
-  RolloutSums Alone(double const* const* blocks, LaneSums sums) const;
-
   std::shared_ptr<const RolloutProblem> problem_;
   ActingColumns columns_;
+  // Where it has lanes: a group of its own, laid out at the first call. Ceres evaluates a block
+  // from one thread at a time.
   mutable std::unique_ptr<LaneGroup> alone_;
 };
 

@@ -244,7 +244,7 @@ class Roller {
     jacobian_.by_parameter.middleCols<kOfTails>(kTailGain).setZero();  // others are written again
     AddFrictionJacobian(self_, p_, state_.qd, &jacobian_);
     const Eigen::Matrix<Lanes, 2, 2> alone = (slides - acts) * jacobian_.by_state.block<2, 2>(0, 4);
-    AddControlJacobian(self_, p_, state_, state_.qd, &jacobian_);
+    AddControlJacobian(self_, p_, state_, &jacobian_);
     for (int k = 0; k < in_.num_tails; ++k) {
       const Lanes* const rate_and_decay = carried_.tails + 2 * k;
       AddTailJacobian(Tail(k, t), p_, rate_and_decay[0], rate_and_decay[1],

@@ -40,7 +40,7 @@ void Jacobian_OfSelfForce_Written(benchmark::State& state) {
     benchmark::DoNotOptimize(walker);
     jacobian.by_state.setZero();
     AddFrictionJacobian(self, walker.p, walker.state.qd, &jacobian);
-    AddControlJacobian(self, walker.p, walker.state, walker.previous, &jacobian);
+    AddControlJacobian(self, walker.p, walker.state, &jacobian);
     benchmark::DoNotOptimize(jacobian);
   }
 }

@@ -9,8 +9,8 @@
 namespace pushid {
 namespace {
 
-// By [q, qd], by the (xd, yd) before, and by the parameters, in that order.
-constexpr int kPrevious = 8, kParameters = 10, kVariables = kParameters + kNumParameters;
+// By [q, qd] and by the parameters, in that order.
+constexpr int kParameters = 8, kVariables = kParameters + kNumParameters;
 using Jet = ceres::Jet<double, kVariables>;
 using AllDerivatives = Eigen::Matrix<double, 4, kVariables>;
 
@@ -23,7 +23,6 @@ AllDerivatives Derivatives(const Vector4<Jet>& of) {
 AllDerivatives Flat(const SelfJacobian<double>& jacobian) {
   AllDerivatives flat = AllDerivatives::Zero();
   flat.leftCols<8>() = jacobian.by_state;
-  flat.block<2, 2>(0, kPrevious) = jacobian.by_previous.asDiagonal();
   flat.rightCols<kNumParameters>() = jacobian.by_parameter;
   return flat;
 }
@@ -34,16 +33,13 @@ void ExpectCorrectSelfJacobian(const ModelOptions& options, double magnitude, Ra
   const SelfForce self(options, RandomBody(random), q0, kSampleDt);
   const ParameterSet<double> values = RandomParameters(random);
   PendulumState<double> at = RandomState(random, magnitude);
-  const Vector4<double> before = RandomVector(random, 3.0 * magnitude);
   if (magnitude < 1.0) at.q += q0;  // rest is the initial posture
   ParameterSet<Jet> p;
   PendulumState<Jet> state;
-  Vector4<Jet> previous = before.cast<Jet>();
   for (int i = 0; i < 4; ++i) {
     state.q[i] = Jet(at.q[i], i);
     state.qd[i] = Jet(at.qd[i], 4 + i);
   }
-  for (int i = 0; i < 2; ++i) previous[i].v[kPrevious + i] = 1.0;
   for (int i = 0; i < kNumParameters; ++i) p[i] = Jet(values[i], kParameters + i);
 
   SelfJacobian<double> jacobian;
@@ -51,8 +47,8 @@ void ExpectCorrectSelfJacobian(const ModelOptions& options, double magnitude, Ra
   jacobian.by_parameter.middleCols<kKpX - kMu>(kMu).topRows<2>().setConstant(NAN);
   AddFrictionJacobian(self, values, at.qd, &jacobian);
   ExpectClose(Flat(jacobian), Derivatives(self.Friction(p, state.qd)), 1e-12);
-  AddControlJacobian(self, values, at, before, &jacobian);
-  ExpectClose(Flat(jacobian), Derivatives(OwnForce(self, p, state, previous)), 1e-12);
+  AddControlJacobian(self, values, at, &jacobian);
+  ExpectClose(Flat(jacobian), Derivatives(OwnForce(self, p, state, state.qd)), 1e-12);
 }
 
 class SelfForceJacobian : public testing::TestWithParam<double> {};
@@ -62,14 +58,11 @@ TEST_P(SelfForceJacobian, EqualsAutomaticDerivatives) {
   for (Posture posture : {Posture::kUpright, Posture::kInitial}) {
     for (GainScaling scaling : {GainScaling::kNone, GainScaling::kMass, GainScaling::kBody}) {
       for (const auto& friction : Names(FrictionKind{})) {
-        for (CartDerivative derivative : {CartDerivative::kNone, CartDerivative::kBackward}) {
-          ModelOptions options;
-          options.posture = posture;
-          options.gain_scaling = scaling;
-          options.friction = friction.value;
-          options.cart_derivative = derivative;
-          ExpectCorrectSelfJacobian(options, GetParam(), &random);
-        }
+        ModelOptions options;
+        options.posture = posture;
+        options.gain_scaling = scaling;
+        options.friction = friction.value;
+        ExpectCorrectSelfJacobian(options, GetParam(), &random);
       }
     }
   }

@@ -90,17 +90,15 @@ TEST(CondensedRollout, KeepsTheCostWithoutDerivatives) {
 
 // The rows of each person, taken from all rows; those of the robust loss corrected frame by frame.
 TEST(CondensedRollout, PeopleKeepTheirOwnEquations) {
-  const CondensedSample s(0.5);
+  CondensedSample s(0.5);
   const CostEvaluation rows =
       EvaluateCost(AutoDiffRollout(s.problem), s.blocks, std::vector<bool>(s.blocks.size(), true));
   const Eigen::MatrixXd jacobian = AllBlocks(rows);
-  std::vector<const double*> blocks;
-  for (const auto& block : s.blocks) blocks.push_back(block.data());
-  const CondensedRollout cost(s.problem);
-  std::vector<CondensedRollout::PersonRows> people;
-  ASSERT_TRUE(cost.EvaluatePeople(blocks.data(), true, &people));
+  std::vector<double*> blocks;
+  for (auto& block : s.blocks) blocks.push_back(block.data());
+  const auto sums = SumUp({}, {{s.problem, blocks}}, LaneSums::kRobust, true);
+  const std::vector<PersonRows> people = CondensedRollout(s.problem).RowsOf(sums[0]);
   ASSERT_EQ(people.size(), 2u);
-  EXPECT_EQ(cost.num_rows(), rows.residuals.size());
   for (int n = 0; n < 2; ++n) {
     const Eigen::Index own = (kCondensedFrames - 1) * kFrameResiduals;
     Eigen::MatrixXd j(own, jacobian.cols()), corrected(own, jacobian.cols());

@@ -22,5 +22,12 @@ TEST(PriorResidual, JacobianOfEveryEntry) {
   }
 }
 
+// A network's weights.
+TEST(PriorResidual, OfAWholeBlockHasARowForEachEntry) {
+  const PriorResidual prior(3, 0, 0.0, 0.5, 3);
+  EXPECT_EQ(EvaluateCost(prior, {{1.0, 0.0, -2.0}}, {}).residuals, Eigen::Vector3d(2.0, 0.0, -4.0));
+  ExpectCorrectJacobian(prior, {{1.0, 0.0, -2.0}}, {1e-7, 1e-8, 1e-14});
+}
+
 }  // namespace
 }  // namespace pushid

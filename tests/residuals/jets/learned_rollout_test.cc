@@ -53,10 +53,10 @@ TEST(LearnedTerms, IsSilentAtRest) {
   for (const NetworkShape& shape : EveryNetwork()) {
     if (shape.ldp()) continue;
     const ModelOptions options = WithNetwork(shape, 3.0, &random);
-    NetworkState<double> state(shape, {60.0, 0.9, 0.0});
+    const double* const weights = options.learned->weights.data();
+    NetworkState<double> state(shape, weights, {60.0, 0.9, 0.0});
     for (int t = 0; t < 20; ++t) {
-      EXPECT_EQ(StepNetwork(shape, options.learned->weights.data(), 60.0, &state).norm(), 0.0)
-          << NetworkName(shape);
+      EXPECT_EQ(StepNetwork(shape, weights, &state).norm(), 0.0) << NetworkName(shape);
     }
   }
 }
@@ -80,11 +80,11 @@ TEST(LearnedTerms, LdpsByHand) {
   w[8 + 4 * 3] = 0.5;
   w[24] = 1.0, w[25] = 0.25;
   const auto force = [&](double mass, double rate, int steps) {
-    NetworkState<double> state(shape, {mass, 0.9, 0.0});
+    NetworkState<double> state(shape, w.data(), {mass, 0.9, 0.0});
     Vector4<double> last;
     for (int t = 0; t < steps; ++t) {
       SetMotionInputs<double>(0.0, 0.0, {0.0, 0.0, rate, 0.0}, &state.inputs);
-      last = StepNetwork(shape, w.data(), mass, &state);
+      last = StepNetwork(shape, w.data(), &state);
     }
     return last;
   };
