@@ -430,7 +430,7 @@ struct Condensed {
 // Raw rows become those of the cost, and add up: with c = sqrt(1 + |r|^2 / d^2), residual and
 // Jacobian of a frame times weight / sqrt(c); the loss's own Hessian has 1 / c of that along r
 // (frame_residual.h).
-Condensed Condense(const FitProblem& problem, const RawRows& rows, Index estimates,
+Condensed Condense(const FitProblem& problem, const RawRows& rows, Index all,
                    const std::vector<int>& horizons, int recording) {
   const PendulumRecording& r = problem.recordings()[recording];
   const int columns = static_cast<int>(rows.columns.size()), begin = PushFrame(r);
@@ -476,9 +476,6 @@ Condensed Condense(const FitProblem& problem, const RawRows& rows, Index estimat
       if (r.HasPlates(n)) add(kPlateResiduals, r.plates[n][t].weight, t, &people[n]);
     }
   }
-  const auto beyond = std::lower_bound(rows.columns.begin(), rows.columns.end(), estimates);
-  const std::vector<Index> own(rows.columns.begin(), beyond);
-  const Index count = static_cast<Index>(own.size());
   Condensed condensed{{recording, rows.columns, {}, {}, static_cast<int>(rows.residuals.size())},
                       {}};
   for (PersonSums& person : people) {
@@ -491,15 +488,16 @@ Condensed Condense(const FitProblem& problem, const RawRows& rows, Index estimat
                                          static_cast<size_t>(columns + 1), n);
     for (size_t part = 0; part < num_parts; ++part) {
       const RowMajorMatrix gram =
-          person.robust_parts[part].information().topLeftCorner(count, count);
+          person.robust_parts[part].information().topLeftCorner(columns, columns);
       DataPart& of = condensed.parts.emplace_back();
       of.recording = recording;
       of.person = n;
       of.part = static_cast<int>(part);
-      of.score = Eigen::VectorXd::Zero(estimates);
-      of.score(own) = person.scores[part].head(count);
-      of.information = Eigen::MatrixXd::Zero(estimates, estimates);
-      of.information(own, own) = Eigen::MatrixXd(gram.selfadjointView<Eigen::Upper>());
+      of.score = Eigen::VectorXd::Zero(all);
+      of.score(rows.columns) = person.scores[part];
+      of.information = Eigen::MatrixXd::Zero(all, all);
+      of.information(rows.columns, rows.columns) =
+          Eigen::MatrixXd(gram.selfadjointView<Eigen::Upper>());
     }
   }
   return condensed;
@@ -513,13 +511,14 @@ ResidualRows EvaluateRows(const FitProblem& problem, const FitPoint& point,
   const int recordings = static_cast<int>(problem.recordings().size());
   RowsOfRecordings of(problem, point, assumptions);
   const Index estimates = of.num_estimates();
+  const Index all = estimates + static_cast<Index>(assumptions.size());
   std::vector<RowBlock> blocks(recordings);
   std::vector<std::vector<DataPart>> parts(recordings);
   ParallelFor(recordings, problem.options().num_threads, [&](int i) {
     if (problem.Count(i) == 0) return;
     const RawRows raw = of.Of(i);
     if (raw.residuals.size() == 0) return;
-    Condensed condensed = Condense(problem, raw, estimates, horizons, i);
+    Condensed condensed = Condense(problem, raw, all, horizons, i);
     blocks[i] = std::move(condensed.block);
     parts[i] = std::move(condensed.parts);
   });
@@ -540,7 +539,7 @@ ResidualRows EvaluateRows(const FitProblem& problem, const FitPoint& point,
                       {{RowMajorMatrix::Constant(1, 1, stated), Eigen::VectorXd::Zero(1), {}}},
                       {-1}});
   }
-  ResidualRows rows = Stack(blocks, estimates + static_cast<Index>(assumptions.size()), true);
+  ResidualRows rows = Stack(blocks, all, true);
   for (std::vector<DataPart>& own : parts) {
     for (DataPart& part : own) rows.parts.push_back(std::move(part));
   }
