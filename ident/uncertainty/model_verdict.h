@@ -5,7 +5,7 @@
 // of the cost, b = d2(cost)/d(free)d(eta) and m = -H^-1 b what eta moves the free ones by:
 //   free     the estimates, and the step of the integrator by its stated error, as it errs in every
 //            fit. Rejected: everything that is stated. A term that is missing is then found in none
-//            of ten studies (eight as it is), pushes 1.2 times too strong in none of twelve
+//            of ten studies (seven as it is), pushes 1.2 times too strong in none of twelve
 //   wanted   the value the recordings would give eta, one Newton step of it and of the free ones
 //            together: -(S + m's) / (H_eta,eta + b'm), with the error of the clusters' scatter and
 //            of the priors. Its score test has t = wanted / sqrt(error^2 + sigma^2) with clusters
