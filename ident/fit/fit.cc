@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "datasets/files/number_text.h"
+#include "datasets/files/numeric_table.h"
 #include "ident/fit/covariates.h"
 #include "ident/fit/estimates_table.h"
 #include "ident/fit/step_probability.h"
@@ -331,17 +332,19 @@ constexpr size_t kFolds = 4, kFewestUnits = 3;
 constexpr double kFoldTolerance = 1e-5;
 
 // Solved again from the optimum, without the recordings held out (indices), by the weights of
-// residuals and the spreads of pooled units of the whole. None without a usable optimum.
+// residuals and the spreads of pooled units of the whole, or by those of the others alone. None
+// without a usable optimum.
 std::optional<IdentifiedModel> RefitWithout(const FitProblem& problem, const FitPoint& optimum,
                                             const IdentifiedModel& model,
-                                            const std::vector<int>& held_out) {
+                                            const std::vector<int>& held_out, bool by_own_weights) {
   FitOptions options = problem.options();
   options.num_threads = 1;
   options.function_tolerance = std::max(kFoldTolerance, options.function_tolerance);
   std::vector<int> counts(problem.recordings().size(), 1);
   for (int i : held_out) counts[i] = 0;
-  const FitProblem others(problem.recordings(), options, counts);
-  const SolveStart fit = Refit(others, optimum);
+  FitProblem others(problem.recordings(), options, counts);
+  SolveStart fit = Refit(others, optimum);
+  if (by_own_weights && fit.usable) SolveAndReweigh(&others, &fit);
   if (!fit.usable) return std::nullopt;
   IdentifiedModel refitted = model;
   refitted.options = others.ModelAt(fit.to);
@@ -377,9 +380,7 @@ double Explained(const FitResult& result) {
     if (r.moved) explained.push_back(r.explained);
   }
   if (!result.ok() || explained.empty()) return -INFINITY;
-  const auto middle = explained.begin() + explained.size() / 2;
-  std::nth_element(explained.begin(), middle, explained.end());
-  return *middle;
+  return UpperMedian(std::move(explained));
 }
 
 }  // namespace
@@ -426,7 +427,7 @@ Result<FoldedModels> SolveFolds(const std::vector<PendulumRecording>& recordings
   model.step_probability = FitStepProbability(model, recordings);
   for (const std::vector<int>& fold : held_out) {
     if (options.model.learned == nullptr) {
-      models.without.push_back(RefitWithout(solved.problem, optimum, model, fold));
+      models.without.push_back(RefitWithout(solved.problem, optimum, model, fold, false));
       continue;
     }
     Result<IdentifiedModel> anew = SolveModel(Without(recordings, fold), asked);
@@ -464,7 +465,8 @@ std::vector<FoldModel> CrossFit(const FitProblem& problem, const FitPoint& optim
   }
   std::vector<std::optional<FoldModel>> made(held_out.size());
   ParallelFor(static_cast<int>(held_out.size()), num_threads, [&](int f) {
-    std::optional<IdentifiedModel> refitted = RefitWithout(problem, optimum, model, held_out[f]);
+    std::optional<IdentifiedModel> refitted =
+        RefitWithout(problem, optimum, model, held_out[f], true);
     if (!refitted) return;
     made[f].emplace(FoldModel{*std::move(refitted), held_out[f]});
   });

@@ -418,7 +418,7 @@ struct Condensed {
 };
 
 // Raw rows become those of the cost, and add up, part by part.
-Condensed Condense(const FitProblem& problem, const RawRows& raw, Index estimates,
+Condensed Condense(const FitProblem& problem, const RawRows& raw, Index num_all,
                    const std::vector<int>& horizons, int recording) {
   const PendulumRecording& r = problem.recordings()[recording];
   const FitOptions& options = problem.options();
@@ -438,21 +438,19 @@ Condensed Condense(const FitProblem& problem, const RawRows& raw, Index estimate
   AddUpRows(*MakeRolloutProblem(r, options.model, problem.map(), options.sigmas,
                                 problem.Weight(recording, 0), 0),
             true, LaneSums::kRobust, of_frame, &residuals, &rows);
-  const auto beyond = std::lower_bound(raw.columns.begin(), raw.columns.end(), estimates);
-  const std::vector<Index> own(raw.columns.begin(), beyond);
-  const Index count = static_cast<Index>(own.size());
   Condensed condensed{{recording, raw.columns, {}, {}, static_cast<int>(residuals.size())}, {}};
   for (int n = 0; n < r.num_people(); ++n) {
     RolloutSums all = none;
     for (int part = 0; part < num_parts; ++part) {
       const RolloutSums& some = sums[static_cast<size_t>(n * num_parts + part)];
       all.Add(some);
-      const RowMajorMatrix gram = some.robust.information().topLeftCorner(count, count);
-      DataPart& of = condensed.parts.emplace_back(
-          DataPart{recording, n, part, Eigen::VectorXd::Zero(estimates),
-                   Eigen::MatrixXd::Zero(estimates, estimates)});
-      of.score(own) = some.plain.gradient().head(count);
-      of.information(own, own) = Eigen::MatrixXd(gram.selfadjointView<Eigen::Upper>());
+      const RowMajorMatrix gram = some.robust.information().topLeftCorner(columns, columns);
+      DataPart& of =
+          condensed.parts.emplace_back(DataPart{recording, n, part, Eigen::VectorXd::Zero(num_all),
+                                                Eigen::MatrixXd::Zero(num_all, num_all)});
+      of.score(raw.columns) = some.plain.gradient().head(columns);
+      of.information(raw.columns, raw.columns) =
+          Eigen::MatrixXd(gram.selfadjointView<Eigen::Upper>());
     }
     condensed.block.people.push_back(FewestRows(all));
     condensed.block.person_of_row.insert(condensed.block.person_of_row.end(),
@@ -469,13 +467,14 @@ ResidualRows EvaluateRows(const FitProblem& problem, const FitPoint& point,
   const int recordings = static_cast<int>(problem.recordings().size());
   RowsOfRecordings of(problem, point, assumptions);
   const Index estimates = of.num_estimates();
+  const Index all = estimates + static_cast<Index>(assumptions.size());
   std::vector<RowBlock> blocks(recordings);
   std::vector<std::vector<DataPart>> parts(recordings);
   ParallelFor(recordings, problem.options().num_threads, [&](int i) {
     if (problem.Count(i) == 0) return;
     const RawRows raw = of.Of(i);
     if (raw.residuals.size() == 0) return;
-    Condensed condensed = Condense(problem, raw, estimates, horizons, i);
+    Condensed condensed = Condense(problem, raw, all, horizons, i);
     blocks[i] = std::move(condensed.block);
     parts[i] = std::move(condensed.parts);
   });
@@ -496,7 +495,7 @@ ResidualRows EvaluateRows(const FitProblem& problem, const FitPoint& point,
                       {{RowMajorMatrix::Constant(1, 1, stated), Eigen::VectorXd::Zero(1), {}}},
                       {-1}});
   }
-  ResidualRows rows = Stack(blocks, estimates + static_cast<Index>(assumptions.size()), true);
+  ResidualRows rows = Stack(blocks, all, true);
   for (std::vector<DataPart>& own : parts) {
     for (DataPart& part : own) rows.parts.push_back(std::move(part));
   }

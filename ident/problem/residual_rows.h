@@ -27,7 +27,7 @@ namespace pushid {
 struct DataPart {
   int recording = 0, person = 0;
   int part = 0;                 // the first horizon that holds them; as many as there are: none
-  Eigen::VectorXd score;        // J'r by the estimates
+  Eigen::VectorXd score;        // J'r by the estimates and the assumptions
   Eigen::MatrixXd information;  // J'J by them, with the robust loss's own Hessian
 };
 

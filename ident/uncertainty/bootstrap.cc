@@ -209,10 +209,7 @@ Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& es
   for (size_t p = 0; p < bootstrap.names.size(); ++p) {
     std::vector<double> column;
     for (const std::vector<double>& row : bootstrap.values) column.push_back(row[p]);
-    double mean = 0.0, squares = 0.0;
-    for (double value : column) mean += value / static_cast<double>(column.size());
-    for (double value : column) squares += (value - mean) * (value - mean);
-    bootstrap.standard_error.push_back(std::sqrt(squares / std::max(1.0, column.size() - 1.0)));
+    bootstrap.standard_error.push_back(MeanOf(column).error * std::sqrt(column.size()));
     bootstrap.lower95.push_back(Quantile(column, 0.025));
     bootstrap.upper95.push_back(Quantile(column, 0.975));
   }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "datasets/files/names.h"
+#include "datasets/files/numeric_table.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/residual_rows.h"
 #include "ident/problem/statistics.h"
@@ -216,12 +217,6 @@ constexpr double kLeastShear = 0.5, kLeastCentre = 2e-4;  // N, m: no platform i
 
 constexpr double kNullEigenvalue = kNullSingularValue * kNullSingularValue;
 
-double Median(std::vector<double>* values) {
-  const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
-  std::nth_element(values->begin(), middle, values->end());
-  return *middle;
-}
-
 // The markers' noise in a residual of each kind: a velocity is the difference of two
 // positions, one frame apart, of the mean of two ankles; an angle is that of a rod. Where rates
 // differ, the slowest has the least noise: one floor for all must not lie above it.
@@ -285,18 +280,18 @@ ResidualSigmas EstimateSigmas(const FitProblem& problem, const FitPoint& point) 
       }
     }
   }
-  const auto scale = [](std::vector<double>* of, double median, double weight, double least,
+  const auto scale = [](const std::vector<double>& of, double median, double weight, double least,
                         double* sigma) {
-    if (of->empty()) return;
-    *sigma *= std::sqrt(Median(of) / median) / weight;
+    if (of.empty()) return;
+    *sigma *= std::sqrt(UpperMedian(of) / median) / weight;
     *sigma = std::max(*sigma, least / weight);
   };
   double* const scales[] = {&sigmas.hip, &sigmas.velocity, &sigmas.angle, &sigmas.rate};
   for (size_t k = 0; k < squares.size(); ++k) {
-    scale(&squares[k], kKinds[k].median, kKinds[k].weight, floors[k], scales[k]);
+    scale(squares[k], kKinds[k].median, kKinds[k].weight, floors[k], scales[k]);
   }
-  scale(&of_plates[0], kPlateMedian, 1.0, kLeastShear, &sigmas.shear);
-  scale(&of_plates[1], kPlateMedian, 1.0, kLeastCentre, &sigmas.centre);
+  scale(of_plates[0], kPlateMedian, 1.0, kLeastShear, &sigmas.shear);
+  scale(of_plates[1], kPlateMedian, 1.0, kLeastCentre, &sigmas.centre);
   return sigmas;
 }
 

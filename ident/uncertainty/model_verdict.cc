@@ -98,14 +98,11 @@ class ModelJudge {
     if (!verdict_.checked()) return verdict_;
     verdict_.freedom = clusters_.count() - 1;
     clustering_ = ClusterRows(problem_, clusters_, rows_);
-    const Eigen::Index n = num_estimates();
-    const Eigen::MatrixXd own = rows_.robust_jacobian.leftCols(n);
-    beside_ = rows_.InformationBeside().topLeftCorner(n, n);
-    const Eigen::MatrixXd hessian = own.transpose() * own + beside_;
-    inverse_ = SolveSymmetric(hessian, Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)));
+    information_ = rows_.robust_jacobian.transpose() * rows_.robust_jacobian;
+    beside_ = rows_.InformationBeside();
     scores_ = Scores(rows_, clustering_.first);
     if (clusters_.count() >= kFewestClusters) {
-      TestAssumptions(own);
+      TestAssumptions();
       TestParts();
       TestMotion();
       verdict_.of_pushes = OfMostPushes(problem_.recordings());
@@ -126,15 +123,32 @@ class ModelJudge {
     return TransformSlope(columns_[i].transform, columns_[i].natural);
   }
 
-  void TestAssumptions(const Eigen::MatrixXd& own) {
+  // Columns of estimates, and of the assumptions of which something is stated, or of the step
+  // alone.
+  std::vector<Eigen::Index> Free(bool all_stated) const {
+    std::vector<Eigen::Index> free(num_estimates());
+    std::iota(free.begin(), free.end(), 0);
+    for (size_t k = 0; k < assumptions_.size(); ++k) {
+      const Assumption& a = assumptions_[k];
+      if (a.name == kStepName || (all_stated && a.sigma > 0.0)) {
+        free.push_back(num_estimates() + static_cast<Eigen::Index>(k));
+      }
+    }
+    return free;
+  }
+
+  void TestAssumptions() {
     const Eigen::Index n = num_estimates(), shared = problem_.map().num_shared();
     for (size_t k = 0; k < assumptions_.size(); ++k) {
       const Assumption& a = assumptions_[k];
       const Eigen::Index column = n + static_cast<Eigen::Index>(k);
-      const auto by = rows_.robust_jacobian.col(column);
-      const Eigen::VectorXd b = own.transpose() * by;
-      const Eigen::VectorXd moves = -inverse_ * b;
-      const double all = by.squaredNorm(), information = all + b.dot(moves);
+      std::vector<Eigen::Index> free = Free(false);
+      free.erase(std::remove(free.begin(), free.end(), column), free.end());
+      const Eigen::MatrixXd beside = beside_(free, free);
+      const Eigen::VectorXd b = information_(free, column);
+      const Eigen::VectorXd moves =
+          -SolveSymmetric(Eigen::MatrixXd(information_(free, free) + beside), b);
+      const double all = information_(column, column), information = all + b.dot(moves);
       AssumptionTest test{a.name, a.unit, a.sigma, 0.0, 0.0, 0.0, 1.0, {}};
       if (a.sigma > 0.0) {
         for (Eigen::Index i = 0; i < shared; ++i) {
@@ -143,11 +157,13 @@ class ModelJudge {
       }
       if (information > kLeastInformation * all) {
         const Eigen::VectorXd parts =
-            scores_.row(column).transpose() + scores_.topRows(n).transpose() * moves;
-        test.wanted = -scores_.row(column).sum() / information;
+            scores_.row(column).transpose() + scores_(free, Eigen::all).transpose() * moves;
+        // What scores by estimates add up to is balanced by priors and demands.
+        const double balanced = moves.head(n).dot(scores_.topRows(n).rowwise().sum());
+        test.wanted = (balanced - parts.sum()) / information;
         // Priors scatter about the truth as they say.
         test.error =
-            std::hypot(ErrorOfSum(parts), std::sqrt(moves.dot(beside_ * moves))) / information;
+            std::hypot(ErrorOfSum(parts), std::sqrt(moves.dot(beside * moves))) / information;
         test.t = test.wanted / std::hypot(test.error, a.sigma);
         test.p = StudentTail(test.t, verdict_.freedom);
         const double reach = a.sigma > 0.0 ? kReach * a.sigma : kReach * a.step / kScaleStep;
@@ -175,10 +191,10 @@ class ModelJudge {
 
   template <typename Holds>
   void TestPart(const std::string& name, const Holds& holds) {
-    const Eigen::Index n = num_estimates(), shared = problem_.map().num_shared();
-    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
-    Eigen::MatrixXd some = Eigen::MatrixXd::Zero(n, clusters_.count());  // scores
-    std::set<int> inside, outside;                                       // clusters
+    const Eigen::Index all = information_.cols();
+    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(all, all);
+    Eigen::MatrixXd some = Eigen::MatrixXd::Zero(all, clusters_.count());  // scores
+    std::set<int> inside, outside;                                         // clusters
     for (const DataPart& part : rows_.parts) {
       const int cluster = clusters_.of[part.recording][part.person];
       const bool held = holds(part);
@@ -189,16 +205,21 @@ class ModelJudge {
     }
     // Fewer know nothing of their own scatter.
     if (static_cast<int>(std::min(inside.size(), outside.size())) < kFewestClusters) return;
-    const Eigen::MatrixXd share = information * inverse_;
-    const Eigen::MatrixXd parts = some - share * scores_.topRows(n);
-    // The pull of priors and demands at the optimum is balanced by all rows, and by their share of
-    // these.
-    const Eigen::VectorXd sum = some.rowwise().sum() - share * scores_.topRows(n).rowwise().sum();
-    for (Eigen::Index i = 0; i < shared; ++i) {
-      const double error = ErrorOfSum(parts.row(i).transpose());
+    const std::vector<Eigen::Index> free = Free(false);
+    const Eigen::MatrixXd beside = beside_(free, free);
+    const Eigen::MatrixXd share = SolveSymmetric(Eigen::MatrixXd(information_(free, free) + beside),
+                                                 Eigen::MatrixXd(information(free, free)))
+                                      .transpose();
+    const Eigen::MatrixXd parts = some(free, Eigen::all) - share * scores_(free, Eigen::all);
+    const Eigen::MatrixXd of_priors = share * beside * share.transpose();
+    for (Eigen::Index i = 0; i < problem_.map().num_shared(); ++i) {
+      // The pull of priors and demands at the optimum is balanced by all rows, and by their share
+      // of these. Priors scatter about the truth as they say.
+      const double error =
+          std::hypot(ErrorOfSum(parts.row(i).transpose()), std::sqrt(of_priors(i, i)));
       // An estimate that priors hold asks for its prior, in parts more than in all.
       if (error <= 0.0 || uncertainty_->estimates[i].shares.data < kLeastShare) continue;
-      const double t = sum[i] / error;
+      const double t = parts.row(i).sum() / error;
       verdict_.parts.push_back({columns_[i].name, name, t, StudentTail(t, verdict_.freedom)});
     }
   }
@@ -210,22 +231,18 @@ class ModelJudge {
 
   // With what is stated free as well.
   void AddTotals() {
-    const int n = static_cast<int>(num_estimates());
-    std::vector<int> joint;
-    std::vector<double> unit;
-    const Eigen::VectorXd own = Units(columns_);
-    for (int i = 0; i < n; ++i) joint.push_back(i), unit.push_back(own[i]);
-    for (size_t k = 0; k < assumptions_.size(); ++k) {
-      if (assumptions_[k].sigma <= 0.0) continue;
-      joint.push_back(n + static_cast<int>(k));
-      unit.push_back(assumptions_[k].sigma);
+    const Eigen::Index n = num_estimates();
+    const std::vector<Eigen::Index> joint = Free(true);
+    Eigen::VectorXd unit(static_cast<Eigen::Index>(joint.size()));
+    unit.head(n) = Units(columns_);
+    for (size_t i = columns_.size(); i < joint.size(); ++i) {
+      unit[static_cast<Eigen::Index>(i)] = assumptions_[joint[i] - n].sigma;
     }
     ResidualRows rows = std::move(rows_);  // the last to ask
     rows.jacobian = rows.jacobian(Eigen::all, joint).eval();
     rows.robust_jacobian = rows.robust_jacobian(Eigen::all, joint).eval();
     clustering_.recordings = {};  // nobody asks for the errors of these people
-    const Covariance c = ComputeCovariance(
-        rows, Eigen::Map<const Eigen::VectorXd>(unit.data(), unit.size()), clustering_);
+    const Covariance c = ComputeCovariance(rows, unit, clustering_);
     if (c.scatter.empty()) return;
     Scatter& total = uncertainty_->total = {};
     for (const Scatter::Part& part : c.scatter.parts) {
@@ -257,7 +274,7 @@ class ModelJudge {
   std::vector<Assumption> assumptions_;
   ResidualRows rows_;
   Clustering clustering_;
-  Eigen::MatrixXd beside_, inverse_, scores_;
+  Eigen::MatrixXd information_, beside_, scores_;  // by estimates, then assumptions
   ModelVerdict verdict_;
 };
 
@@ -373,21 +390,18 @@ class Differences {
   // may differ alike.
   std::optional<MotionTest> Test(const char* quantity, const char* unit, double stated,
                                  double step) const {
-    const double n = static_cast<double>(sum_.size());
-    if (n < 3.0) return std::nullopt;
+    if (sum_.size() < 3) return std::nullopt;
     double recordings = 0.0;
-    for (const auto& [cluster, count] : count_) recordings += count;
     std::vector<double> means;
-    for (const auto& [cluster, sum] : sum_) means.push_back(sum / count_.at(cluster));
-    const double mean = std::accumulate(means.begin(), means.end(), 0.0) / n;
-    double squares = 0.0;
-    for (double one : means) squares += (one - mean) * (one - mean);
-    MotionTest test{
-        quantity, unit, mean,
-        std::max(std::sqrt(squares / (n * (n - 1.0))), step / std::sqrt(12.0 * recordings))};
+    for (const auto& [cluster, sum] : sum_) {
+      means.push_back(sum / count_.at(cluster));
+      recordings += count_.at(cluster);
+    }
+    const auto [mean, error] = MeanOf(means);
+    MotionTest test{quantity, unit, mean, std::max(error, step / std::sqrt(12.0 * recordings))};
     if (test.error <= 0.0) return std::nullopt;  // alike in all: nobody knows how much they scatter
     test.t = mean / std::hypot(test.error, stated);
-    test.p = StudentTail(test.t, n - 1.0);
+    test.p = StudentTail(test.t, static_cast<double>(means.size()) - 1.0);
     return test;
   }
 

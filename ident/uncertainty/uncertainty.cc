@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "datasets/files/number_text.h"
@@ -20,12 +19,6 @@ namespace {
 
 constexpr double kTouched = 1e-4;   // share of a null direction that counts
 constexpr double kHeldShare = 0.5;  // of the data; with less, what was put in decides
-
-std::string Format(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 // Sums and differences of two touched shared parameters of one unit that the null space leaves
 // alone; at most as many as are independent.
@@ -101,8 +94,8 @@ std::vector<NullDirection> DescribeNullSpace(const FitProblem& problem, const Fi
     for (const Combination& c : joint.identified) {
       const double width = problem.Spec(largest).scale;
       const bool known = IsNarrow(Transform::kIdentity, width, c.lower95, c.upper95);
-      joint.sentence += "; " + c.name + " = " + Format(c.value) + " +- " +
-                        Format(c.standard_error) + " " + c.unit +
+      joint.sentence += "; " + c.name + " = " + Rounded(c.value, 4) + " +- " +
+                        Rounded(c.standard_error, 4) + " " + c.unit +
                         (known ? " is identified" : " is only weakly identified");
     }
   }
@@ -280,14 +273,10 @@ Estimate MakeEstimate(const FittedColumn& c, ScatterOf of, double naive_variance
 }
 
 Eigen::MatrixXd Correlation(const Eigen::MatrixXd& covariance) {
-  const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  Eigen::MatrixXd correlation = covariance;
-  for (int i = 0; i < covariance.rows(); ++i) {
-    for (int j = 0; j < covariance.cols(); ++j) {
-      const double product = deviation[i] * deviation[j];
-      correlation(i, j) = product > 0.0 ? covariance(i, j) / product : (i == j ? 1.0 : 0.0);
-    }
-  }
+  const Eigen::ArrayXd variance = covariance.diagonal();
+  const Eigen::VectorXd scale = (variance > 0.0).select(variance.rsqrt(), 0.0);
+  Eigen::MatrixXd correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
+  correlation.diagonal().setOnes();
   return correlation;
 }
 

@@ -34,14 +34,14 @@ class Slider:
 
     def __init__(self, mass, rod, gains, delay=0.0):
         self.mass, self.rod, self.gains, self.delay = mass, rod, gains, delay
-        self.point = 0.9 * mass
+        self.point, self.height = 0.9 * mass, 1.0
 
     def acceleration(self, lean, speed, rate, seen, force):
-        """(cart, lean) of a horizontal force at the hip, N; by Lagrange's equations, the mass matrix inverted by Cramer's rule."""
+        """(cart, lean) of a horizontal force at `height` of the rod, N; by Lagrange's equations, the mass matrix inverted by Cramer's rule."""
         m, l, gains = self.point, self.rod, self.gains
         sine, cosine = math.sin(lean), math.cos(lean)
         along = self.mass * (-gains["c"] * speed + gains["a"] * seen[0]) + force + m * l * sine * rate * rate
-        about = m * G * l * (sine - gains["k"] * seen[0]) - m * l * l * gains["d"] * seen[1] + force * l * cosine
+        about = m * G * l * (sine - gains["k"] * seen[0]) - m * l * l * gains["d"] * seen[1] + force * self.height * l * cosine
         across = m * l * cosine
         det = self.mass * m * l * l - across * across
         return (m * l * l * along - across * about) / det, (self.mass * about - across * along) / det

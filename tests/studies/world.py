@@ -3,6 +3,7 @@
 faults    something is wrong with the files, the people or the model; 10 minutes on two cores
 sound     nothing is wrong, but there is noise, and few people; three times as many sets
 few       nothing is wrong, but there is one person, or one recording, or all people are alike
+power     how much of what the data decide is called identified; and with errors of the pushes' height, gains pooled or not
 standing  people whose feet never move
 
 An interval that is called identified and does not hold the truth is wrong; so is any identified drag or lean term of feet that
@@ -10,6 +11,7 @@ never moved. Needs NumPy. PUSHID_STUDIES is the number of sets of people per row
 """
 import concurrent.futures
 import dataclasses
+import functools
 import hashlib
 import json
 import math
@@ -46,7 +48,10 @@ class Study:
     delay: float = 0.0  # s, of reactions
     scale: float = 1.0  # of the pushes in the files
     mass: float = 1.0  # of the masses
-    height: float = 1.0  # of the sensor, of the rod
+    height: float = 1.0  # of the sensor, over that of the push
+    aim: float = 0.0  # m, by which the height of each push in the files is off
+    heights: float = 0.0  # within which pushes are below the hip, of the rod
+    rests: float = 0.0  # 1/s, how fast the slowest mode of the mean person decays at least; 0: or grows
     drift: float = 0.0  # m, of the cameras over a recording
     rate: float = 1.0  # of the frames
     memory: float = 0.0  # of one frame's noise in the next
@@ -60,7 +65,18 @@ def truth_of(study, random):
 
     if study.links:
         return {"kp": random.uniform(1.25, 1.9), "kd": random.uniform(0.3, 0.5)}
-    return {"c": draw(0.5), "a": -draw(8.0), "k": draw(2.2), "d": study.kd}
+    while True:
+        truth = {"c": draw(0.5), "a": -draw(8.0), "k": draw(2.2), "d": study.kd}
+        if not study.rests or growth(truth) < -study.rests:
+            return truth
+
+
+def growth(truth):
+    """Of the slowest mode of the mean person who slides, 1/s, without the place of the cart: d(speed, lean, rate)/dt, linearly."""
+    inertia = np.array([[1.0, 0.9 * ROD], [0.9 * ROD, 0.9 * ROD**2]])
+    forces = np.array([[-truth["c"], truth["a"], 0.0], [0.0, 0.9 * people.G * ROD * (1.0 - truth["k"]), -0.9 * ROD**2 * truth["d"]]])
+    speed, rate = np.linalg.solve(inertia, forces)
+    return max(np.linalg.eigvals(np.array([speed, [0.0, 0.0, 1.0], rate])).real)
 
 
 def in_names_of_pushid(study, truth):
@@ -82,14 +98,15 @@ def draw_person(study, random, truth):
 
 
 def draw_pushes(study, random, person):
-    """(direction, duration, force, motion) of each; FloatingPointError of who falls."""
+    """(direction, duration, height, force, motion) of each; FloatingPointError of who falls."""
     made = []
     for _ in range(study.pushes):
         direction = random.uniform(-math.pi, math.pi) if study.around else random.uniform(-0.1, 0.1)
         speed = random.uniform(0.05, 0.16) if study.links else random.uniform(0.1, 0.6)  # impulse over mass, m/s
         duration = random.uniform(0.1, 0.4)
         force = people.half_sine(speed * person.mass, duration)
-        made.append((direction, duration, force, person.run(force, direction, 1.5, study.fps)))
+        person.height = 1.0 - (random.uniform(0.0, study.heights) if study.heights else 0.0)
+        made.append((direction, duration, person.height, force, person.run(force, direction, 1.5, study.fps)))
     return made
 
 
@@ -113,12 +130,13 @@ def write(folder, study):
     truth, pushed = draw_people(study, random)
     recordings, turn = [], people.turned(study.turn)
     for s, (person, pushes) in enumerate(pushed):
-        for k, (direction, duration, force, (times, hip, feet)) in enumerate(pushes):
+        for k, (direction, duration, height, force, (times, hip, feet)) in enumerate(pushes):
             name, hip, feet = f"s{s}_{k}", hip @ turn.T, feet @ turn[:2, :2].T
             people.write_points(f"{folder}/{name}.csv", times / study.rate, people.points_of(hip, feet, turn), study.noise, random,
                                 study.drift, study.memory)
+            off = study.aim / person.rod * random.standard_normal() if study.aim else 0.0
             people.write_push(f"{folder}/{name}_push.csv", force, direction + study.turn, hip, feet, study.fps, duration, study.scale,
-                              study.height)
+                              height * study.height + off)
             recordings.append({"id": name, "setting": "single", "pushed_person": 0, "csv": [f"{name}.csv"], "length_unit": "m",
                                "subjects": [{"id": f"s{s}", "mass_kg": round(person.mass * study.mass * (1 + study.weighed * (k % 7 - 3) / 3), 2)}],
                                "push_csv": f"{name}_push.csv", "push_kind": "external"})
@@ -140,13 +158,13 @@ def files_of(study):
         return folder, json.load(file)
 
 
-def fitted(study):
-    """The verdict and the free parameters of a default fit, with their truth; None where there is no fit."""
+def fitted(study, flags=()):
+    """The verdict and the free parameters of a fit by these flags, with their truth; None where there is no fit."""
     files, truth = files_of(study)
     with tempfile.TemporaryDirectory() as folder:
         path = f"{folder}/model.json"
         command = [os.path.join(studies.BIN, "pushid-fit"), f"--recordings={files}/manifest.json", f"--model_out={path}", "--quiet",
-                   "--num_threads=1"]
+                   "--num_threads=1", *flags]
         subprocess.run(command, capture_output=True, env=dict(os.environ, OPENBLAS_NUM_THREADS="1"))
         if not os.path.exists(path):
             return None
@@ -160,9 +178,10 @@ def holds(interval, truth):
     return truth is not None and interval[0] <= truth <= interval[1]
 
 
-def row(name, change, sets):
+def row(name, change, sets, flags=()):
     with concurrent.futures.ProcessPoolExecutor(2) as pool:
-        fits = [fit for fit in pool.map(fitted, [Study(seed, **change) for seed in range(1, sets + 1)]) if fit is not None]
+        every = pool.map(functools.partial(fitted, flags=flags), [Study(seed, **change) for seed in range(1, sets + 1)])
+        fits = [fit for fit in every if fit is not None]
     feet_stand = bool(change.get("links"))
     judged = [e for _, rows in fits for e in rows if e["truth"] is not None or (feet_stand and e["name"] in FEET)]
     before = [e for e in judged if e["status"] in ("identified", "model-dependent") or narrow_by_data(e)]
@@ -214,19 +233,31 @@ FEW = {
     "six people who are alike, all pushed at one height": {"spread": 0.0},
     "ten people who are alike": {"subjects": 10, "spread": 0.0},
 }
+# Ten people who come to rest within about two seconds.
+REST = {"subjects": 10, "rests": 2.0}
+POWER = {
+    "pushed at 0.7 to 1 of the rod": {**REST, "heights": 0.3},
+    "at one height": REST,
+    "at 0.7 to 1, all 5 cm off in the files": {**REST, "heights": 0.3, "height": 1.055},
+    "at one height, all 5 cm off": {**REST, "height": 1.055},
+    "at 0.7 to 1, each 5 cm off by itself": {**REST, "heights": 0.3, "aim": 0.05},
+    "at one height, each 5 cm off by itself": {**REST, "aim": 0.05},
+}
+POOLED = ("--pool=all", "--pool_by=subject")
 STANDING = {f"{links} link{'s' * (links > 1)}, delay {delay:g} s": {"links": links, "delay": delay, "subjects": 6, "pushes": 6,
                                                                    "spread": 0.05}
             for links in (1, 2) for delay in (0.0, 0.12)}
 STANDING["1 link, delay 0 s, markers of 10 mm"] = {**STANDING["1 link, delay 0 s"], "noise": 0.01}
 
 
-def table(what, rows, sets):
+def table(what, rows, sets, ways={"": ()}):
     header = [what, "fits", "model does not fit", "identified by the data alone", "called identified", "of these wrong", "which",
               "95 % intervals that hold the truth", "total ones"]
-    return studies.table(header, [row(name, change, sets) for name, change in rows.items()])
+    return studies.table(header, [row(name + way, change, sets, flags) for way, flags in ways.items() for name, change in rows.items()])
 
 
 if __name__ == "__main__":
     studies.main(__file__, {"faults": lambda: table("what is wrong", FAULTS, SETS), "sound": lambda: table("sound data", SOUND, 3 * SETS),
                             "few": lambda: table("few people, or all alike", FEW, 2 * SETS),
+                            "power": lambda: table("ten people who come to rest", POWER, 2 * SETS, {"": (), "; pooled": POOLED}),
                             "standing": lambda: table("who stands", STANDING, SETS)})

@@ -34,10 +34,12 @@ std::vector<FoldModel> FoldsOfProblem(const std::vector<PendulumRecording>& reco
   return CrossFit(problem, from, model, 2);
 }
 
+// Neither for gains nor for weights.
 TEST(CrossFit, LooksAtNothingHeldOut) {
   const SyntheticOptions study = DifferingPeople();
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
-  const FitOptions options = UnbiasedFit(study);
+  FitOptions options = UnbiasedFit(study);
+  options.estimate_weights = true;
   const FitProblem problem(recordings, options);
   const SolveStart start = SolveFrom(problem, problem.NominalPoint(), "nominal", nullptr);
   ASSERT_TRUE(start.usable);
