@@ -161,9 +161,8 @@ struct JetOf {
   }
 };
 
-// The jets of rollouts: a pass of eight columns, and of many, whose values are computed once.
+// The jet of rollouts: a pass of eight columns.
 using VectorJet = JetOf<double, 8>;
-using WideJet = JetOf<double, 24>;
 
 }  // namespace
 

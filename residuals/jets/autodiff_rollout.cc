@@ -42,12 +42,8 @@ RolloutStatus RowsByJets(const RolloutProblem& problem, const SensitivityInputs&
                                          inputs.network_weights, residuals->data());
   }
   RolloutStatus status;
-  for (int first = 0; status.ok && first < inputs.num_columns;) {
-    // Wide where a network's weights are fitted: a group's states would leave the nearest cache.
-    const bool wide = inputs.weight_column >= 0 && first + WideJet::kColumns <= inputs.num_columns;
-    const RolloutJets::RowsPass pass = wide ? jets->wide_rows : jets->rows;
-    status = pass(problem, inputs, first, residuals->data(), rows->data());
-    first += wide ? WideJet::kColumns : kPass;
+  for (int first = 0; status.ok && first < inputs.num_columns; first += kPass) {
+    status = jets->rows(problem, inputs, first, residuals->data(), rows->data());
   }
   return status;
 }

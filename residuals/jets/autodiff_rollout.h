@@ -1,6 +1,6 @@
 // residuals: derivatives of rollouts by automatic differentiation: the models' own templates and
 // RolloutResidual (rollout_residual.h) with a scalar that holds a value and its derivatives by
-// eight or more columns (models/jet.h), in as many passes as a recording's acting columns need
+// eight columns (models/jet.h), in as many passes as a recording has acting columns
 // (parameter_map.h). Compiled once for each width of vectors, the widest that the processor has
 // chosen at run time; the bits are those of every other width.
 //
@@ -42,9 +42,9 @@ class StateColumns {
 
 namespace {
 
-// Inputs of a rollout, with their derivatives by a jet's columns from `first` on.
-template <typename Jet>
+// Inputs of a rollout, with their derivatives by the eight columns from `first` on.
 struct JetInputs {
+  using Jet = VectorJet;
   std::vector<ParameterSet<Jet>> parameters;
   std::vector<Vector4<Jet>> velocity;
   std::vector<Jet> weights;
@@ -83,14 +83,12 @@ struct JetInputs {
 
 }  // namespace
 
-// Passes of one width of vectors: eight columns of the inputs, or those of a WideJet, from `first`
-// on.
+// Passes of one width of vectors: eight columns of the inputs, from `first` on.
 struct RolloutJets {
-  using RowsPass = RolloutStatus (*)(const RolloutProblem& problem, const SensitivityInputs& inputs,
-                                     int first, double* residuals, double* rows);
   int bits;               // of a vector
   std::size_t alignment;  // of the models' vectors, which must be that of everybody else
-  RowsPass rows, wide_rows;
+  RolloutStatus (*rows)(const RolloutProblem& problem, const SensitivityInputs& inputs, int first,
+                        double* residuals, double* rows);
   RolloutStatus (*states)(const Scene& scene, const ModelOptions& options,
                           const SensitivityInputs& inputs, int num_frames, int first,
                           RolloutPath<double>* path, StateColumns* columns);

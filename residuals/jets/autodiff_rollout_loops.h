@@ -9,13 +9,12 @@
 namespace pushid {
 namespace {
 
-template <typename Jet>
 RolloutStatus PassOfRows(const RolloutProblem& problem, const SensitivityInputs& in, int first,
                          double* residuals, double* rows) {
-  thread_local std::vector<Jet> jets;
+  thread_local std::vector<VectorJet> jets;
   jets.resize(problem.num_residuals());
-  const JetInputs<Jet> inputs(problem.options, in, first);
-  const RolloutStatus status = RolloutResidual::Rows<Jet>(
+  const JetInputs inputs(problem.options, in, first);
+  const RolloutStatus status = RolloutResidual::Rows<VectorJet>(
       problem, inputs.parameters, inputs.velocity, inputs.network(), jets.data());
   if (!status.ok) return status;
   for (size_t i = 0; i < jets.size(); ++i) {
@@ -29,7 +28,7 @@ RolloutStatus PassOfStates(const Scene& scene, const ModelOptions& options,
                            const SensitivityInputs& in, int num_frames, int first,
                            RolloutPath<double>* path, StateColumns* columns) {
   thread_local RolloutPath<VectorJet> jets;
-  const JetInputs<VectorJet> inputs(options, in, first);
+  const JetInputs inputs(options, in, first);
   const RolloutStatus status =
       Rollout<VectorJet>(scene, options, inputs.parameters, inputs.velocity, num_frames, &jets,
                          nullptr, inputs.network());
@@ -60,9 +59,8 @@ StateStep* MakeStep(const Scene& scene, const ModelOptions& options,
 
 template <>
 const RolloutJets& OfWidth<RolloutJets, PUSHID_WIDTH>() {
-  static constexpr RolloutJets jets = {PUSHID_WIDTH,          alignof(Vector4<double>),
-                                       PassOfRows<VectorJet>, PassOfRows<WideJet>,
-                                       PassOfStates,          MakeStep};
+  static constexpr RolloutJets jets = {PUSHID_WIDTH, alignof(Vector4<double>), PassOfRows,
+                                       PassOfStates, MakeStep};
   return jets;
 }
 
