@@ -211,12 +211,14 @@ class ModelJudge {
                                                  Eigen::MatrixXd(information(free, free)))
                                       .transpose();
     const Eigen::MatrixXd parts = some(free, Eigen::all) - share * scores_(free, Eigen::all);
-    const Eigen::MatrixXd of_priors = share * beside * share.transpose();
+    // The pull of priors at the optimum is balanced by all rows, and by their share of these; the
+    // step errs as it is stated.
+    Eigen::MatrixXd stated = beside;
+    stated.topLeftCorner(num_estimates(), num_estimates()).setZero();
+    const Eigen::MatrixXd of_step = share * stated * share.transpose();
     for (Eigen::Index i = 0; i < problem_.map().num_shared(); ++i) {
-      // The pull of priors and demands at the optimum is balanced by all rows, and by their share
-      // of these. Priors scatter about the truth as they say.
       const double error =
-          std::hypot(ErrorOfSum(parts.row(i).transpose()), std::sqrt(of_priors(i, i)));
+          std::hypot(ErrorOfSum(parts.row(i).transpose()), std::sqrt(of_step(i, i)));
       // An estimate that priors hold asks for its prior, in parts more than in all.
       if (error <= 0.0 || uncertainty_->estimates[i].shares.data < kLeastShare) continue;
       const double t = parts.row(i).sum() / error;
