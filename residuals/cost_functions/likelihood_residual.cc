@@ -162,7 +162,7 @@ bool LikelihoodResidual::ByJets(const SensitivityInputs& in, RowMajorMatrix* by_
   for (int first = 0; first < by_acting->cols(); first += VectorJet::kColumns) {
     const int count = std::min<int>(VectorJet::kColumns, by_acting->cols() - first);
     std::vector<GaussianDensity<VectorJet>> densities(problem_.num_densities());
-    Transitions(problem_, JetInputs<VectorJet>(problem_.options, in, first).parameters, &densities);
+    Transitions(problem_, JetInputs(problem_.options, in, first).parameters, &densities);
     std::vector<VectorJet> rows;
     if (!RowsOf(densities, &rows)) return false;
     for (Eigen::Index row = 0; row < by_acting->rows(); ++row) {

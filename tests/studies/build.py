@@ -45,7 +45,7 @@ int main() {
 """
 
 # What a build may cost. Lines are those that a header is after preprocessing: Eigen's alone are 81,000.
-MOST_OBJECTS, MOST_QUICKSTART_OBJECTS = 93, 55
+MOST_OBJECTS, MOST_QUICKSTART_OBJECTS = 88, 42
 HEADERS = {"models/options.h": 28000, "datasets/files/error.h": 22000, "datasets/loading/load_recordings.h": 92000,
            "ident/parameters/fit_options.h": 92000, "ident/model/fitted_model.h": 96000, "ident/prediction/prediction.h": 99000,
            "apps/flags/command_line.h": 98500, "apps/flags/recording_flags.h": 102000}

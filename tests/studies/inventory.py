@@ -15,17 +15,17 @@ import sys
 import studies
 
 ENDINGS = (".h", ".cc", ".py", ".sh", ".json", ".cmake", ".toml", "CMakeLists.txt")
-MOST_LINES, MOST_FILES, MOST_FLAGS, MOST_FIT_FLAGS, SLACK = 70865, 350, 160, 45, 1.05
+MOST_LINES, MOST_FILES, MOST_FLAGS, MOST_FIT_FLAGS, SLACK = 70858, 350, 160, 45, 1.05
 # Feature, goal, bound, and the files of it: the first row that matches a file has it.
 FEATURES = [
     ("contrasts", 560, 602, r"ident/(fit/(covariates|contrast)|uncertainty/contrast|report/contrast)"),
-    ("verdict", 1000, 888, r"ident/uncertainty/(model_verdict|assumptions)"),
+    ("verdict", 1000, 890, r"ident/uncertainty/(model_verdict|assumptions)"),
     ("steps and stance", 1749, 1442, r"models/(stance|standing|support)|datasets/loading/foot_steps|ident/(fit/step_probability|prediction/predicted_steps|report/page/standing)"),
     ("laboratory", 1648, 1426, r"models/(ground|reaction_delay|turn)|datasets/(loading/(laboratory|ground_markers)|manifest/laboratory_keys)|residuals/plate_residual|ident/(parameters/laboratory|fit/laboratory|prediction/laboratory)"),
     ("interaction", 450, 474, r"models/(contact|pair|interaction|ldp_interaction|neighbours)"),
     ("learned terms", 1200, 423, r"models/(learned_terms|self_network)|ident/parameters/(learned_terms|self_network)|residuals/takeover"),
     ("large networks", 1295, 1212, r"ident/(large_networks|solver/network_training)|residuals/adjoint/(adjoint_gradient|step)"),
-    ("derivatives, lanes, kernels", 2300, 2591, r"models/jet|residuals/(kernels|lanes|jets|adjoint|autodiff_force_law|normal_equations|cost_functions/condensed)"),
+    ("derivatives, lanes, kernels", 2300, 2582, r"models/jet|residuals/(kernels|lanes|jets|adjoint|autodiff_force_law|normal_equations|cost_functions/condensed)"),
     ("noise, likelihoods, paths", 1600, 1366, r"models/(process_noise|input_|pendulum_filter)|residuals/cost_functions/likelihood|ident/(solver/likelihood|forecasts/(most_probable|path))|apps/pushid_path"),
     ("diffusion", 1500, 1511, r"models/generators/diffusion|apps/flags/.*diffusion"),
     ("particles", 2400, 2091, r"models/(particles|generators/particle)|ident/forecasts/forecast_"),
