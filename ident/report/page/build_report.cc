@@ -231,7 +231,7 @@ std::string PartLook(ForcePart part) {
 
 constexpr char kNetLook[] = "ink net";
 constexpr double kSmallestRange = 10.0;  // N or N m, so that little is not blown up
-constexpr double kNothing = 1e-6;        // N or N m
+constexpr double kNoForce = 1e-6;        // N or N m
 
 // Two panels for each person: the net force along the push (N) and the torque about y (N m) over
 // time with their parts, all on one scale, so that heights compare.
@@ -265,7 +265,7 @@ Figure ForcesFigure(const FormationRun& run) {
       from = std::min(from, lowest), to = std::max(to, highest);
       chart.title = kForceHeads[column];
       if (run.num_people() > 1) chart.title = "person " + std::to_string(n) + ": " + chart.title;
-      if (highest - lowest < kNothing) chart.y_label = "nothing";
+      if (highest - lowest < kNoForce) chart.y_label = "nothing";
       figure.panels.push_back(chart);
     }
   }
