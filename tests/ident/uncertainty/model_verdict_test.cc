@@ -240,7 +240,7 @@ TEST(ModelVerdict, HalfStepsEndWhereWholeOnesDo) {
   }
 }
 
-// Who was pushed again, or has more of the mass in the feet, is named; a drag that grows with speed
+// A second push, or more of the mass in the feet, is named; a drag that grows with speed
 // is the term c_q. One Newton step tells how much, where it is little.
 TEST(ModelVerdict, NamesSecondPushesCartSharesAndQuadraticDrag) {
   SyntheticOptions study = Study(3);
