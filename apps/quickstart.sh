@@ -30,9 +30,7 @@ if [ -z "${PUSHID_BIN:-}" ]; then
   generator=()
   if [ ! -f build/release/CMakeCache.txt ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
   cmake --preset release "${generator[@]}" >/dev/null
-  targets=(pushid_quickstart)
-  if [ $example = laboratory ]; then targets+=(pushid-push); fi
-  cmake --build build/release --parallel "$(nproc)" --target "${targets[@]}"
+  cmake --build build/release --parallel "$(nproc)" --target pushid_quickstart
 fi
 
 # The study FOLDER SEED: recordings of eight people, and a fit with default flags, whose priors do not depend on the truth.
