@@ -33,9 +33,6 @@ DEFINE_double(height, pushid::SensorChoice{}.height_fraction,
 DEFINE_double(sensor_start, 0.0,
               "force sensor: its clock at frame 0, s; default: that of the motion if both are in "
               "one file or the record holds half of the recording by it; else both begin at once");
-DEFINE_bool(estimate_offset, pushid::SensorSetup{}.estimate_offset,
-            "force sensors: estimate the offset of their clocks from the motion's, of people "
-            "whose feet move; offsets within their error are zero");
 
 namespace {
 
@@ -43,9 +40,9 @@ using namespace pushid;
 
 // Flags that need more than a look.
 struct PushFlags {
-  std::vector<std::string> ids;  // the recordings
-  SensorSetup sensor;            // the sensors of the push; without one, inverse dynamics
-  PushWindow window = {-1, -1};  // of inverse dynamics; -1: to be detected
+  std::vector<std::string> ids;       // the recordings
+  std::vector<SensorChoice> sensors;  // that push together; without one, inverse dynamics
+  PushWindow window = {-1, -1};       // of inverse dynamics; -1: to be detected
 };
 
 bool SensorsListed() { return EndsWith(FLAGS_sensor, ".json"); }
@@ -72,7 +69,6 @@ std::vector<SensorChoice> SensorsFromFlags() {
 
 void CheckSensors() {
   CheckNeeds(kOfOneSensor, "sensor", ": name the file of its forces");
-  CheckNeeds({"estimate_offset"}, "sensor");
   if (SensorsListed()) {
     RefuseGiven(kOfOneSensor, " is given in the list, " + FLAGS_sensor + "; leave it out");
   }
@@ -97,9 +93,8 @@ void CheckRecordings(const PushFlags& flags) {
     throw Error{"--out needs {id} for " + std::to_string(ids.size()) +
                 " recordings, as in push/{id}.csv"};
   }
-  const std::vector<SensorChoice>& sensors = flags.sensor.sensors;
   const bool each_its_own =
-      std::all_of(sensors.begin(), sensors.end(),
+      std::all_of(flags.sensors.begin(), flags.sensors.end(),
                   [](const SensorChoice& sensor) { return HasPlace(sensor.file); });
   if (ids.size() > 1 && !each_its_own) {
     throw Error{
@@ -135,8 +130,7 @@ PushFlags PushFlagsFromCommandLine() {
         "a push has a row for each of the recording's own frames; leave --resample_fps out"};
   }
   CheckSensors();
-  if (!FLAGS_sensor.empty()) flags.sensor.sensors = SensorsFromFlags();
-  flags.sensor.estimate_offset = FLAGS_estimate_offset;
+  if (!FLAGS_sensor.empty()) flags.sensors = SensorsFromFlags();
   CheckRecordings(flags);
   return flags;
 }
@@ -161,12 +155,12 @@ std::string PathFromManifest(const std::string& file) {
 
 MadePush FromSensor(const PushFlags& flags, const Recording& recorded,
                     const PendulumRecording& recording) {
-  SensorSetup setup = flags.sensor;
-  for (SensorChoice& sensor : setup.sensors) sensor.file = WithId(sensor.file, recorded.id);
-  for (const SensorChoice& sensor : setup.sensors) {
+  std::vector<SensorChoice> sensors = flags.sensors;
+  for (SensorChoice& sensor : sensors) {
+    sensor.file = WithId(sensor.file, recorded.id);
     OrFail(CheckNotRead("--sensor", sensor.file));
   }
-  const SensorPush made = OrFail(PushFromSensors(setup, recorded, recording, FLAGS_person));
+  const SensorPush made = OrFail(PushFromSensors(sensors, recorded, recording, FLAGS_person));
   for (const std::string& warning : made.warnings) LOG(WARNING) << warning;
   return {recorded.id, OutOf(recorded.id), made.push, PushKind::kExternal, made.how};
 }
@@ -273,8 +267,8 @@ int Run() {
   std::vector<Finding> findings;
   for (const Recording& recorded : recordings) {
     const PendulumRecording recording = MakePendulumRecording(recorded);
-    const MadePush made = flags.sensor.sensors.empty() ? ByInverseDynamics(flags, recording)
-                                                       : FromSensor(flags, recorded, recording);
+    const MadePush made = flags.sensors.empty() ? ByInverseDynamics(flags, recording)
+                                                : FromSensor(flags, recorded, recording);
     WarnOfFirstRow(made);
     Recording pushed = recorded;
     pushed.pushes = {made.push};

@@ -439,12 +439,12 @@ const std::vector<FindingRow>& Names(FindingKind) {
        true},
       {"late push", Kind::kLate, "the person moves before being pushed", "s",
        "is the push's start right (start_frame, first_frame), and the sensor's clock "
-       "(pushid-push --sensor_start, --estimate_offset)? a person who moves all the time needs "
+       "(pushid-push --sensor_start)? a person who moves all the time needs "
        "initial_velocity",
        true},
       {"early push", Kind::kEarly, "the person moves long after being pushed", "s late",
        "is the push's start right (start_frame, first_frame), and the sensor's clock "
-       "(pushid-push --sensor_start, --estimate_offset)?",
+       "(pushid-push --sensor_start)?",
        true},
       {"force at rest", Kind::kZero, "the force does not return to zero", "N at the end",
        "the sensor has an offset, which counts as a push: subtract it (pushid-push does)", true},

@@ -6,7 +6,6 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/loading/motion_tracks.h"
-#include "models/decompositions.h"
 #include "models/rollout.h"
 #include "models/skeleton_mapping.h"
 
@@ -64,11 +63,11 @@ Vector3<double> Impulse(const SensorRecord& record, double from, double to) {
 // A push that lies outside the recording, or is no greater than the idling. `empty`: no row holds
 // more than that.
 MaybeError CheckPushInside(const SensorRecord& record, const SensorChoice& sensor,
-                           const PendulumRecording& recording, double margin, bool empty) {
+                           const PendulumRecording& recording, bool empty) {
   const double zero = sensor.start_s.value_or(0.0);
   const double end = zero + (recording.num_frames() - 1) * recording.scene.dt;
-  const Vector3<double> before = Impulse(record, record.time_s.front(), zero - margin);
-  const Vector3<double> after = Impulse(record, end + margin, record.time_s.back());
+  const Vector3<double> before = Impulse(record, record.time_s.front(), zero);
+  const Vector3<double> after = Impulse(record, end, record.time_s.back());
   const Vector3<double> inside = Impulse(record, zero, end);
   // An idling sensor adds up outside the recording; only what exceeds it is a lost push.
   const double span = record.time_s.back() - record.time_s.front();
@@ -88,7 +87,6 @@ MaybeError CheckPushInside(const SensorRecord& record, const SensorChoice& senso
 }
 
 constexpr double kCutShort = 0.2;    // of the peak
-constexpr double kOddGain = 3.0;     // beyond what friction and recovery blur
 constexpr double kNoisePeaks = 4.0;  // standard deviations
 
 // Rows of several pushes on one person, added frame by frame.
@@ -124,12 +122,6 @@ std::string CutShort(const SensorRecord& record) {
   return "";
 }
 
-// A sensor, with what the motion's file says of it, and what it measured.
-struct ReadSensorOf {
-  SensorChoice choice;
-  SensorRecord record;
-};
-
 // The clock at frame 0 of a sensor in a file of its own, when nothing is said of it: the motion's,
 // where the record holds at least half of the recording by it; otherwise both began at once. So a
 // motion that is cut (first_frame) keeps its push.
@@ -140,226 +132,29 @@ double ClockBeside(const SensorRecord& record, const RecordedPerson& person, dou
   return shared >= 0.5 * seconds ? begin : record.time_s.front() + person.skipped_s;
 }
 
-Result<std::vector<ReadSensorOf>> ReadAll(const SensorSetup& setup, const Recording& recorded,
-                                          int person, SensorPush* result) {
-  std::vector<ReadSensorOf> read;
-  const std::size_t count = setup.sensors.size();
-  result->how =
-      count == 1 ? "from the sensor, averaged over the frames"
-                 : "from " + std::to_string(count) + " sensors together, averaged over the frames";
-  for (SensorChoice sensor : setup.sensors) {
-    const bool said = sensor.start_s.has_value();
-    for (const RecordedPerson& one : recorded.people) FillFromMotion(one, &sensor);
-    Result<SensorRecord> record = ReadSensor(sensor, &result->warnings);
-    if (!record.ok()) return record.error();
-    const bool together = sensor.start_s.has_value();
-    if (!together) {
-      sensor.start_s = ClockBeside(record.value(), recorded.people[person],
-                                   (recorded.num_frames() - 1) / recorded.fps);
-    }
-    if (!said && (together || *sensor.start_s != 0.0)) {
-      result->how += std::string(together ? "; recorded with the motion, its clock"
-                                          : "; by the motion's times, its clock") +
-                     " at frame 0 is " + Rounded(*sensor.start_s, 4) + " s" +
-                     (together ? "" : " (--sensor_start changes it)");
-    }
-    const Vector3<double>& rest = record.value().subtracted;
-    if (rest.norm() > 0.0) {
-      const double size = record.value().is_vector ? rest.norm() : rest.x();
-      result->how += "; " + Rounded(size, 3) +
-                     " N before the pull subtracted (zero: 0, "
-                     "in a list of sensors, keeps them)";
-    }
-    read.push_back({sensor, std::move(record.value())});
+// Reads a sensor, with what the motion's file says of it; tells what was taken as known.
+SensorRecord ReadBeside(const Recording& recorded, int person, SensorChoice* sensor,
+                        SensorPush* result) {
+  const bool said = sensor->start_s.has_value();
+  for (const RecordedPerson& one : recorded.people) FillFromMotion(one, sensor);
+  SensorRecord record = OrThrow(ReadSensor(*sensor, &result->warnings));
+  const bool together = sensor->start_s.has_value();
+  if (!together) {
+    sensor->start_s = ClockBeside(record, recorded.people[person],
+                                  (recorded.num_frames() - 1) / recorded.fps);
   }
-  return read;
-}
-
-// The error of an estimated offset: that of noise, and half a frame, which its fit cannot tell.
-double ClockError(const SensorOffset& offset, const PendulumRecording& recording) {
-  return 0.5 * recording.scene.dt + 2.0 * offset.standard_error_s;
-}
-
-// Offset of the sensors' clocks by the motion; zero unless it is asked for and the motion does not
-// contradict it.
-Result<SensorOffset> Offset(const SensorSetup& setup, const std::vector<ReadSensorOf>& read,
-                            const PendulumRecording& recording, int person, SensorPush* result) {
-  if (!setup.estimate_offset) return SensorOffset();
-  std::vector<TimedRecord> timed;
-  for (const auto& [sensor, record] : read) {
-    // Vectors along the direction, as PushFromSensor makes them.
-    timed.push_back({record, sensor.start_s.value_or(0.0)});
-    if (record.is_vector) continue;
-    for (Eigen::Vector3d& force : timed.back().record.force) {
-      force = force.x() * sensor.direction.normalized();
-    }
+  if (!said && (together || *sensor->start_s != 0.0)) {
+    result->how += std::string(together ? "; recorded with the motion, its clock"
+                                        : "; by the motion's times, its clock") +
+                   " at frame 0 is " + Rounded(*sensor->start_s, 4) + " s" +
+                   (together ? "" : " (--sensor_start changes it)");
   }
-  Result<SensorOffset> offset = EstimateSensorOffset(timed, recording, person);
-  if (!offset.ok()) return offset;
-  const double gain = offset.value().gain;
-  if (gain < 1.0 / kOddGain || gain > kOddGain) {
-    result->warnings.push_back("the motion fits best with " + Rounded(gain, 2) +
-                               " times the force: check its unit and gain, and the mass");
+  const Vector3<double>& rest = record.subtracted;
+  if (rest.norm() > 0.0) {
+    result->how += "; " + Rounded(record.is_vector ? rest.norm() : rest.x(), 3) +
+                   " N before the pull subtracted (zero: 0, in a list of sensors, keeps them)";
   }
-  const std::string estimate = Rounded(offset.value().offset_s, 4) + " +- " +
-                               Rounded(offset.value().standard_error_s, 2) + " s";
-  if (std::abs(offset.value().offset_s) <= ClockError(offset.value(), recording)) {
-    result->how += "; the clocks agree (offset by the motion " + estimate + "): not moved";
-    offset.value().offset_s = 0.0;
-  } else {
-    result->how += "; clock at frame 0 moved by " + estimate + " (estimated)";
-  }
-  return offset;
-}
-
-using Eigen::VectorXd;
-
-constexpr double kAfterPush = 0.4;  // s of motion behind the push's end that take part
-constexpr int kFewestFrames = 12;
-constexpr int kRefinements = 20;
-
-// One sensor's force along the direction, integrated once and twice: exact for the broken line.
-class Integrals {
- public:
-  Integrals(const TimedRecord& force, const Eigen::Vector2d& direction)
-      : zero_(force.frame_zero_time_s), time_(force.record.time_s) {
-    for (const Eigen::Vector3d& f : force.record.force) {
-      force_.push_back(f.head<2>().dot(direction));
-    }
-    integrals_.emplace_back(0.0, 0.0);
-    for (std::size_t i = 1; i < time_.size(); ++i) {
-      integrals_.push_back(Within(i - 1, time_[i] - time_[i - 1]));
-    }
-  }
-
-  // (once, twice) at a time of the cameras plus the offset.
-  Eigen::Vector2d At(double t) const {
-    t += zero_;
-    if (t <= time_.front()) return Eigen::Vector2d::Zero();
-    const Eigen::Vector2d& last = integrals_.back();
-    if (t >= time_.back()) return {last[0], last[1] + last[0] * (t - time_.back())};
-    const std::size_t i = std::upper_bound(time_.begin(), time_.end(), t) - time_.begin() - 1;
-    return Within(i, t - time_[i]);
-  }
-
- private:
-  // h behind sample i, within its interval.
-  Eigen::Vector2d Within(std::size_t i, double h) const {
-    const double slope = (force_[i + 1] - force_[i]) / (time_[i + 1] - time_[i]);
-    const double once = integrals_[i][0], twice = integrals_[i][1];
-    return {once + h * (force_[i] + 0.5 * h * slope),
-            twice + h * (once + h * (0.5 * force_[i] + h * slope / 6.0))};
-  }
-
-  double zero_;
-  const std::vector<double>& time_;
-  std::vector<double> force_;
-  std::vector<Eigen::Vector2d> integrals_;  // up to each sample
-};
-
-class OffsetFit {
- public:
-  OffsetFit(const std::vector<TimedRecord>& forces, const PendulumRecording& recording, int person,
-            const Eigen::Vector2d& direction, int frames)
-      : dt_(recording.scene.dt), mass_(recording.scene.people[person].body.mass) {
-    for (const TimedRecord& force : forces) integrals_.emplace_back(force, direction);
-    regressors_.resize(frames, 4);
-    target_.resize(frames);
-    weight_.resize(frames);
-    double lean_once = 0.0, lean_twice = 0.0, way = 0.0, lean_before = 0.0, x_before = 0.0;
-    double lean_zero = 0.0, x_zero = 0.0;
-    for (int t = 0; t < frames; ++t) {
-      const double x = recording.states[person][t].q.head<2>().dot(direction);
-      const double hip = recording.hip[person][t].head<2>().dot(direction);
-      if (t == 0) lean_zero = hip - x, x_zero = x;
-      const double lean = hip - x - lean_zero, moved = x - x_zero;
-      if (t > 0) {  // trapezoids
-        const double once = lean_once + 0.5 * dt_ * (lean + lean_before);
-        lean_twice += 0.5 * dt_ * (once + lean_once);
-        lean_once = once;
-        way += 0.5 * dt_ * (moved + x_before);
-      }
-      lean_before = lean;
-      x_before = moved;
-      weight_[t] = recording.Weight(person, t);
-      regressors_.row(t) << 1.0, t * dt_, lean_twice, way;
-      target_[t] = 0.9 * hip + 0.1 * x;
-    }
-    pseudo_inverse_ = PseudoInverse(weight_.asDiagonal() * regressors_);
-  }
-
-  // Residuals after the linear parameters; the derivative is by tau, with them following.
-  VectorXd Residual(double tau, VectorXd* derivative = nullptr) const {
-    const Eigen::MatrixX2d moved = ByTheForce(tau);
-    if (derivative != nullptr) *derivative = Projected(-moved.col(0));
-    return Projected(target_ - moved.col(1));
-  }
-
-  // The multiple of the force that would leave least.
-  double Gain(double tau) const {
-    const VectorXd along = Projected(ByTheForce(tau).col(1));
-    return along.dot(Projected(target_)) / along.squaredNorm();
-  }
-
-  double Count() const { return weight_.squaredNorm(); }
-
- private:
-  // Velocity and way that the force alone would have given the person, by frame.
-  Eigen::MatrixX2d ByTheForce(double tau) const {
-    Eigen::MatrixX2d moved(target_.size(), 2);
-    for (int t = 0; t < target_.size(); ++t) {
-      Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-      for (const Integrals& integral : integrals_) sum += integral.At(t * dt_ + tau);
-      moved.row(t) = (sum / mass_).transpose();
-    }
-    return moved;
-  }
-
-  VectorXd Projected(const VectorXd& value) const {
-    const VectorXd weighted = weight_.cwiseProduct(value);
-    return weighted - weight_.asDiagonal() * (regressors_ * (pseudo_inverse_ * weighted));
-  }
-
-  double dt_, mass_;
-  std::vector<Integrals> integrals_;
-  VectorXd target_, weight_;
-  Eigen::MatrixXd regressors_, pseudo_inverse_;
-};
-
-// The time at which 99 % of the force's impulse has passed, on the cameras' clock; the net
-// direction.
-double PushEnd(const std::vector<TimedRecord>& forces, Eigen::Vector2d* direction) {
-  double end = 0.0;
-  Eigen::Vector2d impulse = Eigen::Vector2d::Zero();
-  for (const TimedRecord& force : forces) {
-    const SensorRecord& r = force.record;
-    double total = 0.0, sum = 0.0;
-    const auto size = [&r](std::size_t i) {
-      return (r.time_s[i] - r.time_s[i - 1]) * r.force[i].head<2>().norm();
-    };
-    for (std::size_t i = 1; i < r.time_s.size(); ++i) {
-      total += size(i);
-      impulse += (r.time_s[i] - r.time_s[i - 1]) * r.force[i].head<2>();
-    }
-    for (std::size_t i = 1; i < r.time_s.size() && sum < 0.99 * total; ++i) {
-      sum += size(i);
-      if (sum >= 0.99 * total) end = std::max(end, r.time_s[i] - force.frame_zero_time_s);
-    }
-  }
-  *direction = impulse.normalized();
-  return impulse.norm() > 0.0 ? end : -1.0;
-}
-
-// The way back after a push would otherwise do for a push the other way.
-bool MovesAgainst(const std::vector<Vector3<double>>& hip, int frames,
-                  const Eigen::Vector2d& direction) {
-  double forth = 0.0, back = 0.0;
-  for (int t = 0; t < frames; ++t) {
-    const double way = (hip[t] - hip[0]).head<2>().dot(direction);
-    forth = std::max(forth, way);
-    back = std::max(back, -way);
-  }
-  return back > forth;
+  return record;
 }
 
 }  // namespace
@@ -449,7 +244,7 @@ Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const Pus
 }
 
 Result<Push> PushFromSensor(const SensorRecord& record, const SensorChoice& sensor,
-                            const PendulumRecording& recording, int person, double clock_error_s) {
+                            const PendulumRecording& recording, int person) {
   if (MaybeError error = CheckPerson(recording, person)) return *error;
   const double zero = sensor.start_s.value_or(0.0), length = sensor.direction.norm();
   if (!record.is_vector && !(std::isfinite(length) && length > 0.0)) {
@@ -477,9 +272,7 @@ Result<Push> PushFromSensor(const SensorRecord& record, const SensorChoice& sens
   if (by_noise && first != rows.begin() && some(first[-1])) --first;
   if (by_noise && last != rows.end() && some(*last)) ++last;
   const bool empty = first == rows.end();
-  if (MaybeError error = CheckPushInside(record, sensor, recording, clock_error_s, empty)) {
-    return *error;
-  }
+  if (MaybeError error = CheckPushInside(record, sensor, recording, empty)) return *error;
   Push push;
   push.person = person;
   push.start_frame = static_cast<int>(first - rows.begin());
@@ -498,105 +291,43 @@ Result<Push> PushFromSensor(const SensorRecord& record, const SensorChoice& sens
   return push;
 }
 
-Result<SensorPush> PushFromSensors(const SensorSetup& setup, const Recording& recorded,
-                                   const PendulumRecording& recording, int person) {
-  if (MaybeError error = CheckPerson(recording, person)) return *error;
-  SensorPush result;
-  Result<std::vector<ReadSensorOf>> read = ReadAll(setup, recorded, person, &result);
-  if (!read.ok()) return read.error();
-  const Result<SensorOffset> offset = Offset(setup, read.value(), recording, person, &result);
-  if (!offset.ok()) return offset.error();
-  const double clock_error_s = setup.estimate_offset ? ClockError(offset.value(), recording) : 0.0;
-  for (auto& [sensor, record] : read.value()) {
-    if (!sensor.height_m) sensor.height_m = record.height_m;
-    sensor.start_s = sensor.start_s.value_or(0.0) + offset.value().offset_s;
-    if (!(sensor.idle_force > 0.0)) {  // the mean over a frame that noise at rest makes
-      const double span = record.time_s.back() - record.time_s.front();
-      const double step = span / (record.num_samples() - 1);
-      sensor.idle_force =
-          kNoisePeaks * record.noise * std::sqrt(std::min(1.0, step / recording.scene.dt));
+Result<SensorPush> PushFromSensors(const std::vector<SensorChoice>& sensors,
+                                   const Recording& recorded, const PendulumRecording& recording,
+                                   int person) {
+  return Caught([&] {
+    OrThrow(CheckPerson(recording, person));
+    SensorPush result;
+    result.how = sensors.size() == 1 ? "from the sensor, averaged over the frames"
+                                     : StrCat("from ", sensors.size(),
+                                              " sensors together, averaged over the frames");
+    std::vector<std::pair<SensorChoice, SensorRecord>> read;
+    for (SensorChoice sensor : sensors) {
+      SensorRecord record = ReadBeside(recorded, person, &sensor, &result);
+      read.emplace_back(std::move(sensor), std::move(record));
     }
-    if (!sensor.height_m && sensor.height_fraction == SensorChoice{}.height_fraction) {
-      result.how += "; contact at the hip's height (--height changes it)";
+    for (auto& [sensor, record] : read) {
+      if (!sensor.height_m) sensor.height_m = record.height_m;
+      if (!(sensor.idle_force > 0.0)) {  // the mean over a frame that noise at rest makes
+        const double span = record.time_s.back() - record.time_s.front();
+        const double step = span / (record.num_samples() - 1);
+        sensor.idle_force =
+            kNoisePeaks * record.noise * std::sqrt(std::min(1.0, step / recording.scene.dt));
+      }
+      if (!sensor.height_m && sensor.height_fraction == SensorChoice{}.height_fraction) {
+        result.how += "; contact at the hip's height (--height changes it)";
+      }
+      AddPush(OrThrow(PushFromSensor(record, sensor, recording, person)), &result.push);
+      for (const std::string& doubt : {CutShort(record), ClippedText(record)}) {
+        if (!doubt.empty()) result.warnings.push_back(doubt);
+      }
+      if (record.height_m && *record.height_m < 0.1) {
+        result.warnings.push_back(sensor.file + ": " + sensor.column +
+                                  " lies on the floor: it measures the ground reaction force of "
+                                  "the person standing there, not a push");
+      }
     }
-    const Result<Push> push = PushFromSensor(record, sensor, recording, person, clock_error_s);
-    if (!push.ok()) return push.error();
-    for (const std::string& doubt : {CutShort(record), ClippedText(record)}) {
-      if (!doubt.empty()) result.warnings.push_back(doubt);
-    }
-    if (record.height_m && *record.height_m < 0.1) {
-      result.warnings.push_back(sensor.file + ": " + sensor.column +
-                                " lies on the floor: it measures the ground reaction force of the "
-                                "person standing there, not a push");
-    }
-    AddPush(push.value(), &result.push);
-  }
-  return result;
-}
-
-Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedRecord>& forces,
-                                          const PendulumRecording& recording, int person,
-                                          double max_offset_s) {
-  if (MaybeError error = CheckPerson(recording, person)) return *error;
-  if (!(max_offset_s > 0.0 && max_offset_s <= 60.0)) {
-    return Error{"the largest offset must be above 0 and at most 60 s"};
-  }
-  Eigen::Vector2d direction;
-  const double end = PushEnd(forces, &direction);
-  if (forces.empty() || end < -0.5)
-    return Error{"there is no horizontal force whose time could be found"};
-  const double dt = recording.scene.dt;
-  const int frames = std::min(recording.num_frames(),
-                              static_cast<int>(std::ceil((end + max_offset_s + kAfterPush) / dt)));
-  if (frames < kFewestFrames) {
-    return Error{"recording " + recording.id + ": the push ends too early to find its time"};
-  }
-  if (recording.StepsKnown() && !recording.steps[person].Moved()) {
-    return Error{
-        "recording " + recording.id +
-        ": the feet do not move, and how a person who stands gives way does not tell the "
-        "sensor's time; give it (--sensor_start), or leave --estimate_offset out where the "
-        "clocks agree"};
-  }
-  if (MovesAgainst(recording.hip[person], frames, direction)) {
-    return Error{"recording " + recording.id +
-                 ": the person moves against the force; its sign or its direction is wrong"};
-  }
-  const OffsetFit fit(forces, recording, person, direction, frames);
-  const int steps = std::max(4, static_cast<int>(std::ceil(4.0 * max_offset_s / dt)));
-  int best = 0;
-  double least = 0.0;
-  for (int i = -steps; i <= steps; ++i) {
-    const double cost = fit.Residual(i * max_offset_s / steps).squaredNorm();
-    if (i == -steps || cost < least) least = cost, best = i;
-  }
-  if (best == -steps || best == steps) {
-    return Error{"recording " + recording.id + ": force and motion do not fit together within " +
-                 Rounded(max_offset_s) + " s; give the sensor's time at frame 0"};
-  }
-  SensorOffset result;
-  result.offset_s = best * max_offset_s / steps;
-  VectorXd slope, residual;
-  for (int i = 0; i < kRefinements; ++i) {
-    residual = fit.Residual(result.offset_s, &slope);
-    const double step = -slope.dot(residual) / slope.squaredNorm();
-    if (!std::isfinite(step)) return Error{"the force does not move the person"};
-    result.offset_s += std::clamp(step, -dt, dt);
-    if (std::fabs(step) < 1e-9) break;
-  }
-  residual = fit.Residual(result.offset_s, &slope);
-  const double n = fit.Count(), variance = residual.squaredNorm() / std::max(1.0, n - 5.0);
-  const double after = residual.head(frames - 1).dot(residual.tail(frames - 1));
-  const double r = std::clamp(after / std::max(residual.squaredNorm(), 1e-300), 0.0, 0.99);
-  result.standard_error_s = std::sqrt(variance / slope.squaredNorm() * (1.0 + r) / (1.0 - r));
-  result.gain = fit.Gain(result.offset_s);
-  if (!(result.standard_error_s <= 0.25 * max_offset_s)) {
-    return Error{"recording " + recording.id +
-                 ": the sensor's time cannot be found from the motion (" +
-                 Rounded(result.offset_s, 3) + " +- " + Rounded(result.standard_error_s, 2) +
-                 " s); is the force in N?"};
-  }
-  return result;
+    return result;
+  });
 }
 
 }  // namespace pushid

@@ -73,20 +73,14 @@ Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const Pus
 // the push's first frame, in metres where height_m is given. Forces up to idle_force before and
 // after the push are the sensor's idling: rows whose mean is no greater, or (but one row) below a
 // hundredth of the largest row's, are cut off at both ends: a push that goes on in noise would have
-// no end. clock_error_s: so far outside the recording a force is not lost.
+// no end.
 //
 // The rows' kind is PushKind::kExternal. Errors: no such person, no direction, a contact height
 // that is not finite, no force at all, or more than 1 % of the impulse outside the recording.
 Result<Push> PushFromSensor(const SensorRecord& record, const SensorChoice& sensor,
-                            const PendulumRecording& recording, int person,
-                            double clock_error_s = 0.0);
+                            const PendulumRecording& recording, int person);
 
 // The push of a person from one force sensor, or from several that push together.
-
-struct SensorSetup {
-  std::vector<SensorChoice> sensors;  // that push together
-  bool estimate_offset = false;       // the offset of their clocks from the motion's
-};
 
 struct SensorPush {
   Push push;
@@ -95,43 +89,8 @@ struct SensorPush {
 };
 
 // The sum of the sensors' pushes on a person; `recorded` is the recording as it was read.
-Result<SensorPush> PushFromSensors(const SensorSetup& setup, const Recording& recorded,
-                                   const PendulumRecording& recording, int person);
-
-// The offset between the clocks of a force sensor and of the cameras, as a parameter of a small
-// fit.
-//
-// Along the push's direction the momentum of the pendulum changes by the push, the ground's
-// friction and the person's own recovery (ipm.h, self_force.h). Integrated twice,
-//   s(t) = s_0 + v_0 t + G(t + tau) / M + a iint e + b int (x - x_0),
-// s = 0.9 hip + 0.1 cart, G the measured force integrated twice, e the lean, x the cart. tau is the
-// only parameter that enters nonlinearly: for each value the others follow by linear least squares
-// (variable projection); a grid over the range, then Gauss-Newton. Positions rather than
-// accelerations, because their noise is white and is not differentiated. The standard error is that
-// of least squares times sqrt((1 + r) / (1 - r)), r the residuals' correlation from frame to frame.
-// No bias on motion simulated at 960 Hz and seen at 60 Hz but half a step of the simulation, which
-// holds a force for a step (tests/studies/sensors.py; of simulations at 60 Hz half a frame is 8
-// ms). People whose feet do not move are refused: their recovery is that of the ankles, and on
-// clocks that agree this fit found 0.1 to 0.35 s. Rejected: cross-correlation with the
-// inverse-dynamics force, which takes the person's reaction for a later push.
-
-// A sensor's forces as vectors in the project's axes, with its clock's reading at frame 0.
-struct TimedRecord {
-  SensorRecord record;
-  double frame_zero_time_s = 0.0;
-};
-
-struct SensorOffset {
-  double offset_s = 0.0;  // to be added to every frame_zero_time_s
-  double standard_error_s = 0.0;
-  double gain = 1.0;  // the multiple of the force that would fit the motion best
-};
-
-// max_offset_s: how far to look on either side. Errors: no such person, no force, too short a
-// recording, a best offset at the end of the range, a motion that does not tell the time (a
-// standard error of a quarter of the range) or goes against the force.
-Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedRecord>& forces,
-                                          const PendulumRecording& recording, int person,
-                                          double max_offset_s = 0.5);
+Result<SensorPush> PushFromSensors(const std::vector<SensorChoice>& sensors,
+                                   const Recording& recorded, const PendulumRecording& recording,
+                                   int person);
 
 }  // namespace pushid

@@ -14,8 +14,8 @@ namespace {
 
 class PushesFromSensorsTest : public AppTest {};
 
-// The push of a recording through a C3D channel, a list of two halves, and with its clock wrong.
-TEST_F(PushesFromSensorsTest, OfAChannelOrAListAndWithAWrongClock) {
+// The push of a recording through a C3D channel and a list of two halves.
+TEST_F(PushesFromSensorsTest, OfAChannelOrAList) {
   SyntheticOptions options;
   options.subjects = 1;
   options.recordings_per_subject = 1;
@@ -69,19 +69,6 @@ TEST_F(PushesFromSensorsTest, OfAChannelOrAListAndWithAWrongClock) {
   EXPECT_EQ(ReadText(Path("p.csv")), alone);
   EXPECT_TRUE(Contains(run.out, "from 2 sensors together"));
 
-  // Its clock a fifth of a second late: found from the motion.
-  run = with({listed("rod.c3d", ", \"start\": -0.2"), "--estimate_offset"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  const std::size_t at = run.out.find("clock at frame 0 moved by ");
-  ASSERT_NE(at, std::string::npos) << run.out;
-  EXPECT_NEAR(std::stod(run.out.substr(at + 26)), 0.2, 0.6 / 60.0) << run.out;
-
-  // On clocks that agree nothing is moved.
-  run = with({listed("rod.c3d"), "--estimate_offset"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_TRUE(Contains(run.out, "the clocks agree")) << run.out;
-  EXPECT_EQ(ReadText(Path("p.csv")), alone);
-
   // Every recording its own file, into a folder that is made; one that breaks off is told of.
   run = RunApp("pushid-push", {common[0], "--ids=" + recording.id, "--sensor_column=rod",
                                "--sensor=" + Path("{id}.c3d"), "--out=" + Path("made/{id}.csv")});
@@ -98,7 +85,6 @@ TEST_F(PushesFromSensorsTest, OfAChannelOrAListAndWithAWrongClock) {
   EXPECT_TRUE(Refused(with({c3d_flag}), {"--sensor_column", "it has rod"}));
   EXPECT_TRUE(Refused(with({c3d_flag, "--sensor_column=x"}), {"no analog channel 'x'", "rod"}));
   EXPECT_TRUE(Refused(with({"--sensor_column=rod"}), {"--sensor_column needs --sensor"}));
-  EXPECT_TRUE(Refused(with({"--estimate_offset"}), {"--estimate_offset needs --sensor"}));
   EXPECT_TRUE(Refused(with({listed("rod.c3d"), "--height=1"}), {"--height", "the list"}));
   EXPECT_TRUE(Refused(with({c3d_flag, "--resample_fps=30"}), {"leave --resample_fps out"}));
 }
