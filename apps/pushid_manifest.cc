@@ -66,7 +66,7 @@ ManifestOptions OptionsFromFlags() {
   options.set = SplitList(FLAGS_set, ';');
   if (!FLAGS_masses.empty()) options.people = OrFail(ReadPeople(FLAGS_masses));
   OrFail(ParseName("--push_kind", FLAGS_push_kind, &options.push_kind));
-  TakeLength(FLAGS_length_unit, FLAGS_length_scale, &options.length_unit, &options.length_scale);
+  options.length = OrFail(ChooseLength("--", FLAGS_length_unit, FLAGS_length_scale));
   return options;
 }
 

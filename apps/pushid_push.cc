@@ -144,15 +144,6 @@ struct MadePush {
   double start_speed = 0.0;  // m/s; inverse dynamics only
 };
 
-// A file's path relative to the manifest's folder.
-std::string PathFromManifest(const std::string& file) {
-  namespace fs = std::filesystem;
-  std::error_code failed;
-  const fs::path folder = fs::absolute(FLAGS_recordings).parent_path();
-  const fs::path path = fs::proximate(fs::absolute(file), folder, failed);
-  return failed ? fs::absolute(file).string() : path.string();
-}
-
 MadePush FromSensor(const PushFlags& flags, const Recording& recorded,
                     const PendulumRecording& recording) {
   std::vector<SensorChoice> sensors = flags.sensors;
@@ -229,7 +220,8 @@ void PrintEntry(const MadePush& of) {
       "push_csv (--update does this):\n");
   std::printf("  \"push_kind\": \"%s\",\n", NameOf(of.kind).c_str());
   std::printf("  \"pushes\": [{\"person\": %d, \"csv\": %s, \"start_frame\": %d}]\n",
-              of.push.person, nlohmann::json(PathFromManifest(of.file)).dump().c_str(),
+              of.push.person,
+              nlohmann::json(PathFromManifest(FLAGS_recordings, of.file)).dump().c_str(),
               of.push.start_frame);
 }
 
@@ -256,7 +248,8 @@ void SetPush(const MadePush& of, ManifestRecording* entry) {
   }
   if (entry->pushed_person == person) entry->push_csv.clear();
   entry->pushes = std::move(others);
-  entry->pushes.push_back({person, PathFromManifest(of.file), of.push.start_frame});
+  entry->pushes.push_back(
+      {person, PathFromManifest(FLAGS_recordings, of.file), of.push.start_frame});
   entry->push_kind = of.kind;
 }
 

@@ -65,14 +65,6 @@ void TakeInRange(const char* flag, Value value, double lowest, double highest, T
   CheckRange(flag, static_cast<double>(value), lowest, highest);
 }
 
-// Copies --length_unit or --length_scale, whichever has a value. Errors: both; an invalid unit or
-// scale.
-inline void TakeLength(const std::string& unit, double scale,
-                       std::optional<LengthUnit>* length_unit,
-                       std::optional<double>* length_scale) {
-  OrFail(ChooseLength("--", unit, scale, length_unit, length_scale));
-}
-
 // The effective flags of this executable that are part of a result: not outputs, threads,
 // verbosity.
 std::map<std::string, std::string> EffectiveFlags();

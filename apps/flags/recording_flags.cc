@@ -35,7 +35,7 @@ LoadOptions LoadOptionsOfFlags() {
   options.preparation = {FLAGS_max_gap_s, FLAGS_lowpass_hz, FLAGS_resample_fps};
   options.ids = SplitList(FLAGS_ids);
   options.leave_out = SplitList(FLAGS_leave_out);
-  TakeLength(FLAGS_length_unit, FLAGS_length_scale, &options.length_unit, &options.length_scale);
+  options.length = OrFail(ChooseLength("--", FLAGS_length_unit, FLAGS_length_scale));
   OrFail(CheckPreparation(options.preparation));
   return options;
 }

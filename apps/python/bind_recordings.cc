@@ -129,8 +129,7 @@ py::tuple Read(const std::string& manifest, const std::string& setting,
   options.leave_out = leave_out;
   options.keep_all_joints = all_joints;
   options.preparation = {max_gap_s, lowpass_hz, resample_fps};
-  Check(ChooseLength("", length_unit, length_scale, &options.length_unit, &options.length_scale),
-        Fault::kUsage);
+  options.length = Unwrapped(ChooseLength("", length_unit, length_scale), Fault::kUsage);
   Check(CheckPreparation(options.preparation), Fault::kUsage);
   Warnings warnings;
   auto read = WithoutGil([&] { return LoadRecordings(manifest, options, &warnings); });

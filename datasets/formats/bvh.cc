@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <memory>
 #include <unordered_set>
 
 #include "datasets/files/atomic_file.h"
@@ -527,36 +527,36 @@ Result<double> ReadBvhFrameTime(const std::string& path) {
   });
 }
 
-Result<BvhPositions> ReadBvhPositions(const std::string& path, const BvhPositionOptions& options) {
+Result<PointMotion> ReadBvhPoints(const std::string& path, const PointReadOptions& options) {
   return Caught([&] {
     LineReader reader(path);
-    BvhHeader header = ReadBvhHeader(&reader);
-    BvhPositions result;
-    result.frame_time_s = header.frame_time_s;
-    result.joints.resize(header.skeleton.joints.size());
-    std::iota(result.joints.begin(), result.joints.end(), 0);
-    if (options.choose_joints) result.joints = options.choose_joints(header.skeleton);
-    result.positions.resize(result.joints.size());
+    const BvhHeader header = ReadBvhHeader(&reader);
+    PointMotion motion;
+    motion.path = path;
+    motion.rate_hz = 1.0 / header.frame_time_s;
+    motion.names = header.skeleton.Names();
+    motion.skeleton = std::make_shared<const BvhSkeleton>(header.skeleton);
+    ChoosePoints(options, &motion);
+    motion.positions.resize(motion.chosen.size());
     const std::size_t frames = FramesToReserve(reader, header);
-    for (auto& track : result.positions) track.reserve(frames);
-    BvhKinematics kinematics(header.skeleton, options.metres_per_unit, result.joints);
-    std::vector<Eigen::Vector3d> positions(result.joints.size());
+    for (auto& track : motion.positions) track.reserve(frames);
+    BvhKinematics kinematics(header.skeleton, 1.0, motion.chosen);
+    std::vector<Eigen::Vector3d> positions(motion.chosen.size());
     int row = 0;
     const auto take_row = [&](const std::vector<double>& values) {
       kinematics.Positions(values.data(), positions.data());
       if (row >= options.first_kept && row - options.first_kept < options.kept_rows) {
-        result.values.insert(result.values.end(), values.begin(), values.end());
+        motion.values.insert(motion.values.end(), values.begin(), values.end());
       }
       ++row;
       for (std::size_t i = 0; i < positions.size(); ++i) {
-        result.positions[i].push_back(positions[i]);
+        motion.positions[i].push_back(positions[i]);
       }
     };
     const std::vector<bool> all(header.skeleton.num_channels(), true);
     ReadFrames(&reader, header, options.kept_rows > 0 ? all : kinematics.UsedValues(), take_row);
-    result.skeleton = std::move(header.skeleton);
-    result.content_hash = reader.HashHex();
-    return result;
+    motion.content_hash = reader.HashHex();
+    return motion;
   });
 }
 

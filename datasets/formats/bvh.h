@@ -10,7 +10,7 @@
 //   precedes
 //     rotation wherever the position channels stand in the list.
 //
-//   Result<BvhPositions> p = ReadBvhPositions("walk.bvh");  // of all joints, m
+//   Result<PointMotion> p = ReadBvhPoints("walk.bvh");  // of all joints
 //   MaybeError failed = WriteBvh("copy.bvh", motion);
 //
 // The readers are strict: a truncated file, a row too many or too few, a number that is not one,
@@ -18,15 +18,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/files/input_file.h"
-#include "datasets/formats/units.h"
+#include "datasets/formats/point_motion.h"
 #include "models/enum_names.h"
 
 namespace pushid {
@@ -79,32 +76,9 @@ struct BvhMotion {
 // Seconds; no row is read.
 Result<double> ReadBvhFrameTime(const std::string& path);
 
-struct BvhPositionOptions {
-  // Metres in one of the file's lengths.
-  double metres_per_unit = MetresPer(LengthUnit::kMillimetre);
-  // Called once with the skeleton, it returns indices of the joints whose positions are wanted, in
-  // the order wanted, or throws an Error; unset: all joints.
-  std::function<std::vector<int>(const BvhSkeleton&)> choose_joints;
-  // Rows of which the values of all channels are kept, as they stand: 8 bytes per number.
-  int first_kept = 0, kept_rows = 0;
-};
-
-// World positions of chosen joints.
-struct BvhPositions {
-  BvhSkeleton skeleton;  // offsets in the file's own unit
-  double frame_time_s = 0.0;
-  std::vector<int> joints;                              // joint index of each entry of `positions`
-  std::vector<std::vector<Eigen::Vector3d>> positions;  // [chosen joint][frame], metres
-  std::vector<double> values;                           // of the kept rows, as in BvhMotion
-  std::string content_hash;                             // XXH3-128 of the file, hex
-
-  int num_frames() const { return positions.empty() ? 0 : static_cast<int>(positions[0].size()); }
-};
-
-// Reads row by row and keeps nothing but what is chosen: 24 bytes per joint and frame whatever the
-// file's size.
-Result<BvhPositions> ReadBvhPositions(const std::string& path,
-                                      const BvhPositionOptions& options = {});
+// The joints as points, in the file's lengths; the skeleton is kept beside them. Reads row by row
+// and keeps nothing but what is chosen: 24 bytes per joint and frame whatever the file's size.
+Result<PointMotion> ReadBvhPoints(const std::string& path, const PointReadOptions& options = {});
 
 // Writes `motion` as it stands, atomically. Numbers are the shortest that read back to the same
 // double. A wrong number of values, NaN, no frames or a frame time out of range is an Error; the

@@ -6,7 +6,6 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/formats/bvh.h"
 #include "datasets/formats/units.h"
 
 namespace pushid {
@@ -41,7 +40,6 @@ std::string MotionKeys() { return ListOfNames(AllNames<MotionFormat>()); }
 Result<PointMotion> ReadPointMotion(const std::string& path, MotionFormat format,
                                     const PointReadOptions& options) {
   const MotionFormatRow& row = RowOf(format);
-  if (row.read == nullptr) return Error{"a skeleton's joints are no points", path};
   Result<PointMotion> motion = row.read(path, options);
   if (!motion.ok() || !motion.value().names.empty()) return motion;
   return Error{StrCat("the file has no points",
@@ -56,7 +54,7 @@ Result<double> ReadFrameRate(const std::string& path, MotionFormat format,
   return Caught([&] {
     if (HasSkeleton(format)) return WholeFrameRate(1.0 / OrThrow(ReadBvhFrameTime(path)));
     PointReadOptions none = options;
-    none.choose = [](const std::vector<std::string>&) { return std::vector<int>{}; };
+    none.choose = [](const PointMotion&) { return std::vector<int>{}; };
     return WholeFrameRate(OrThrow(ReadPointMotion(path, format, none)).rate_hz);
   });
 }

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "datasets/files/numeric_table.h"
+#include "datasets/formats/bvh.h"
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/point_motion.h"
 #include "datasets/formats/trajectories.h"
@@ -26,13 +27,12 @@ struct MotionFormatRow {
   MotionFormat value;
   const char* title;                   // as people write it
   std::array<const char*, 2> endings;  // of file names, whatever the case; null: none
-  // The reader; null: the file holds a skeleton and the motion of its joints, which bvh.h reads.
   Result<PointMotion> (*read)(const std::string& path, const PointReadOptions& options);
   std::optional<TableFormat> table = std::nullopt;  // of files that are tables of numbers
 };
 
 inline constexpr MotionFormatRow kMotionFormats[] = {
-    {"bvh", MotionFormat::kBvh, "BVH", {"bvh"}, nullptr},
+    {"bvh", MotionFormat::kBvh, "BVH", {"bvh"}, &ReadBvhPoints},
     {"c3d", MotionFormat::kC3d, "C3D", {"c3d"}, &ReadC3dPoints},
     {"trc", MotionFormat::kTrc, "TRC", {"trc"}, &ReadTrc},
     {"csv", MotionFormat::kCsv, "CSV", {"csv"}, &ReadCsvPoints, TableFormat::kCsv},
@@ -48,7 +48,8 @@ inline constexpr MotionFormatRow kMotionFormats[] = {
 constexpr const auto& Names(MotionFormat) { return kMotionFormats; }
 static_assert(RowsAreInOrder(kMotionFormats), "RowOf finds a row by its value");
 
-inline bool HasSkeleton(MotionFormat format) { return RowOf(format).read == nullptr; }
+// Whether the points of the format are the joints of a skeleton.
+inline bool HasSkeleton(MotionFormat format) { return format == MotionFormat::kBvh; }
 // Whether the points of the format are people of a crowd.
 inline bool HoldsCrowd(MotionFormat format) { return format == MotionFormat::kTrajectoryText; }
 // The reason why recordings of people cannot be made of such a file.
@@ -70,7 +71,7 @@ std::optional<MotionFormat> MotionFormatInFile(const std::string& path);
 std::string MotionFileEndings();
 std::string MotionKeys();
 
-// Reads a format without a skeleton. Errors besides those of the single readers: no points.
+// Errors besides those of the single readers: no points.
 Result<PointMotion> ReadPointMotion(const std::string& path, MotionFormat format,
                                     const PointReadOptions& options = {});
 

@@ -260,7 +260,7 @@ class TrcReader {
 void ChoosePoints(const PointReadOptions& options, PointMotion* motion) {
   motion->chosen.resize(motion->names.size());
   std::iota(motion->chosen.begin(), motion->chosen.end(), 0);
-  if (options.choose) motion->chosen = options.choose(motion->names);
+  if (options.choose) motion->chosen = options.choose(*motion);
 }
 
 Eigen::Vector3d SeenPosition(const Eigen::Vector3d& position) {

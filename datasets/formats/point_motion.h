@@ -1,12 +1,13 @@
-// datasets: trajectories of named points (markers, joints or people of a crowd) from files other
-// than BVH: C3D, TRC, tables (CSV, OpenSim STO and MOT) with three columns per point, trajectories
-// of crowds.
+// datasets: trajectories of named points (markers, joints of a skeleton or people of a crowd) from
+// files of all formats: BVH, C3D, TRC, tables (CSV, OpenSim STO and MOT) with three columns per
+// point, trajectories of crowds.
 //
 //   Result<PointMotion> motion = ReadTrc("trial.trc");  // any format: motion_formats.h
 #pragma once
 
 #include <Eigen/Core>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,8 @@
 #include "datasets/formats/units.h"
 
 namespace pushid {
+
+struct BvhSkeleton;
 
 struct PointMotion {
   std::string path;
@@ -27,8 +30,12 @@ struct PointMotion {
   std::vector<std::string> names;  // of every point of the file
   std::vector<int> chosen;         // the points read: indices into names
   // [chosen][frame], the file's unit and axes; NaN where the point was not seen (empty, NaN, or
-  // exactly zero in all three coordinates).
+  // exactly zero in all three coordinates; joints of BVH files are always seen).
   std::vector<std::vector<Eigen::Vector3d>> positions;
+  // Of a BVH file, whose points are its joints: the hierarchy, offsets in the file's lengths, and
+  // the values of all channels in the rows that were to be kept, row by row as they stand.
+  std::shared_ptr<const BvhSkeleton> skeleton;
+  std::vector<double> values;
   std::string content_hash;
 
   int num_frames() const { return positions.empty() ? 0 : static_cast<int>(positions[0].size()); }
@@ -41,12 +48,17 @@ struct PointColumns {
 };
 
 struct PointReadOptions {
-  Choice choose;  // of points; only those stay in memory where the file is text
+  // Indices of the points that are wanted, in the order wanted, by the names (and skeleton) that
+  // stand in the motion already; throws an Error where one is not there. Unset: all. Only those
+  // stay in memory where the file is text.
+  std::function<std::vector<int>(const PointMotion& file)> choose;
   // Tables: the column of the time in s; empty: a column called time, Time, t, ... where there is
   // one.
   std::string time_column;
   // Tables: points whose columns do not follow a pattern such as hip_x, hip_y, hip_z (PointsOf).
   std::vector<PointColumns> columns;
+  // BVH files: rows whose values are kept, 8 bytes per number.
+  int first_kept = 0, kept_rows = 0;
 };
 
 // Sets the points that the options choose of motion->names, or throws the choice's Error.

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 
 namespace pushid {
@@ -49,20 +50,27 @@ std::string LengthScaleProblem(double metres) {
          Rounded(kSmallest) + " to " + Rounded(kLargest);
 }
 
-MaybeError ChooseLength(const std::string& before, const std::string& unit, double scale,
-                        std::optional<LengthUnit>* length_unit,
-                        std::optional<double>* length_scale) {
-  if (scale != 0.0) {
-    if (!unit.empty()) {
-      return Error{before + "length_scale is given together with " + before +
-                   "length_unit; give one of them"};
+std::optional<double> GivenLength::Metres() const {
+  if (length_scale || !length_unit) return length_scale;
+  return MetresPer(*length_unit);
+}
+
+Result<GivenLength> ChooseLength(const std::string& before, const std::string& unit, double scale) {
+  return Caught([&] {
+    GivenLength given;
+    if (scale != 0.0) {
+      if (!unit.empty()) {
+        throw Error{before + "length_scale is given together with " + before +
+                    "length_unit; give one of them"};
+      }
+      const std::string problem = LengthScaleProblem(scale);
+      if (!problem.empty()) throw Error{before + "length_scale " + problem};
+      given.length_scale = scale;
     }
-    const std::string problem = LengthScaleProblem(scale);
-    if (!problem.empty()) return Error{before + "length_scale " + problem};
-    *length_scale = scale;
-  }
-  if (unit.empty()) return std::nullopt;
-  return ParseName(before + "length_unit", unit, &length_unit->emplace());
+    if (!unit.empty())
+      OrThrow(ParseName(before + "length_unit", unit, &given.length_unit.emplace()));
+    return given;
+  });
 }
 
 std::string LengthText(double metres_per_unit) {

@@ -44,11 +44,19 @@ std::optional<LengthUnit> UnitThatGives(double files_length, double shortest, do
 // 0; it must ..."; empty where it is fine.
 std::string LengthScaleProblem(double metres);
 
-// Sets the unit or the metres of a file's lengths, whichever is given ("" and 0: not given).
-// Errors: both; an invalid one. before: "--" where they are flags.
-MaybeError ChooseLength(const std::string& before, const std::string& unit, double scale,
-                        std::optional<LengthUnit>* length_unit,
-                        std::optional<double>* length_scale);
+// The lengths of files, by somebody who need not believe them: a unit, or instead of one the metres
+// in one of the files' lengths. Neither: not said.
+struct GivenLength {
+  std::optional<LengthUnit> length_unit;
+  std::optional<double> length_scale;
+
+  // In one of the files' lengths; nullopt: not said.
+  std::optional<double> Metres() const;
+};
+
+// By a unit's name and a scale, of which one is "" or 0. Errors: both; an invalid one. before: "--"
+// where they are flags.
+Result<GivenLength> ChooseLength(const std::string& before, const std::string& unit, double scale);
 
 // "mm", or "0.0564 m each" where it is no unit.
 std::string LengthText(double metres_per_unit);

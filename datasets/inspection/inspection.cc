@@ -275,63 +275,60 @@ void InspectManifest(Inspection* found) {
   found->Fact("subjects", ListOfNames({subjects.begin(), subjects.end()}));
 }
 
-// A warning where hip and ankles cannot be found.
+// Hip, ankles, feet and pelvis of a motion, as indices into its names.
+struct FoundPlaces {
+  std::optional<PendulumJoints> joints;
+  PelvisSides pelvis;
+  std::string body;
+};
+
+// Warns where hip and ankles cannot be found.
+FoundPlaces PlacesOf(const PointMotion& motion, const ColumnMapping& mapping, Inspection* found) {
+  const BvhSkeleton* skeleton = motion.skeleton.get();
+  const auto joints = ChoosePendulum(motion.path, motion.names, skeleton, mapping.joints);
+  if (!joints.ok()) {
+    found->Warn(joints.error().message);
+    return {};
+  }
+  const auto roles =
+      ChooseRoles(motion.path, motion.names, skeleton, joints.value(), mapping.joints);
+  return {joints.value(), SidesOf(roles), RolesText(roles)};
+}
+
 void LookAtPoints(const PointMotion& motion, const ColumnMapping& mapping, Inspection* found) {
   found->Fact("points", ListOfNames(motion.names));
-  const Result<PendulumJoints> joints =
-      ChoosePendulumPoints(motion.path, motion.names, mapping.joints);
-  if (!joints.ok()) found->Warn(joints.error().message);
-  PelvisSides pelvis;
-  if (joints.ok()) {
-    const Result<BodyRoles> roles =
-        ChooseRoles(motion.path, motion.names, nullptr, joints.value(), mapping.joints);
-    found->Fact("body", RolesText(roles));
-    pelvis = SidesOf(roles);
-  }
-  InspectMotion(motion, joints.ok() ? std::optional(joints.value()) : std::nullopt, pelvis, found);
+  const FoundPlaces places = PlacesOf(motion, mapping, found);
+  if (!places.body.empty()) found->Fact("body", places.body);
+  InspectMotion(motion, places.joints, places.pelvis, found);
 }
 
 // A joint of a BVH file is never hidden, so that only hip, its sides and the feet are kept: files
 // of a gigabyte fit.
 void LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
-  std::optional<PendulumJoints> places;  // indices into the joints kept
-  PelvisSides pelvis;
-  std::string body;
-  std::vector<std::string> names;
-  BvhPositionOptions options;
-  options.metres_per_unit = 1.0;  // as it stands: the unit is what is to be found
-  options.choose_joints = [&](const BvhSkeleton& skeleton) {
-    names = skeleton.Names();
-    const auto joints = ChoosePendulumJoints(found->path, skeleton, mapping.joints);
-    if (!joints.ok()) {
-      found->Warn(joints.error().message);
-      return std::vector<int>{0};
-    }
-    const auto roles = ChooseRoles(found->path, names, &skeleton, joints.value(), mapping.joints);
-    body = RolesText(roles);
-    pelvis = SidesOf(roles);
+  FoundPlaces places;  // indices into the joints kept
+  PointReadOptions options;
+  options.choose = [&](const PointMotion& file) {
+    places = PlacesOf(file, mapping, found);
     std::vector<int> kept;
-    places = joints.value();
     const auto keep = [&kept](std::vector<int>* place) {
       if (place->empty()) return;
       kept.push_back((*place)[0]);
       *place = {static_cast<int>(kept.size()) - 1};
     };
-    for (const PendulumTrack& row : kPendulumTracks) keep(&((*places).*row.joints));
-    keep(&pelvis.left);
-    keep(&pelvis.right);
+    if (!places.joints) return std::vector<int>{0};
+    for (const PendulumTrack& row : kPendulumTracks) keep(&((*places.joints).*row.joints));
+    keep(&places.pelvis.left);
+    keep(&places.pelvis.right);
     return kept;
   };
-  BvhPositions bvh = OrThrow(ReadBvhPositions(found->path, options));
-  PointMotion motion;
-  motion.path = found->path;
-  motion.rate_hz = 1.0 / bvh.frame_time_s;
-  for (int joint : bvh.joints) motion.names.push_back(names[joint]);
+  PointMotion motion = OrThrow(ReadBvhPoints(found->path, options));
+  found->Fact("joints", ListOfNames(motion.names));
+  if (!places.body.empty()) found->Fact("body", places.body);
+  std::vector<std::string> kept;
+  for (int joint : motion.chosen) kept.push_back(motion.names[joint]);
+  motion.names = std::move(kept);
   ChoosePoints({}, &motion);
-  motion.positions = std::move(bvh.positions);
-  found->Fact("joints", ListOfNames(names));
-  if (!body.empty()) found->Fact("body", body);
-  InspectMotion(motion, places, pelvis, found);
+  InspectMotion(motion, places.joints, places.pelvis, found);
 }
 
 void LookAtC3d(const ColumnMapping& mapping, Inspection* found) {

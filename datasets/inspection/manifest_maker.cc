@@ -166,12 +166,8 @@ class Maker {
     return found == values.end() ? fallback : found->second;
   }
 
-  // The path of a file as the manifest names it.
   std::string BesideManifest(const fs::path& file) const {
-    std::error_code failed;
-    const fs::path base = fs::absolute(options_.manifest_path).parent_path();
-    const fs::path path = fs::proximate(fs::absolute(file), base, failed);
-    return (failed ? file : path).generic_string();
+    return PathFromManifest(options_.manifest_path, file.string());
   }
 
   void AddRecording(const std::string& id, std::vector<FoundFile>* files) {
@@ -203,8 +199,7 @@ class Maker {
     SetPush(values, &recording);
     recording.mapping = options_.mapping.empty() ? "" : BesideManifest(options_.mapping);
     SetAxes(&recording);
-    recording.length_unit = options_.length_unit;
-    recording.length_scale = options_.length_scale;
+    recording.length = options_.length;
     SetKeys(values, &recording);
     made_.manifest.recordings.push_back(recording);
   }

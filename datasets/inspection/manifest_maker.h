@@ -37,8 +37,7 @@ struct ManifestOptions {
   PushKind push_kind = PushKind::kExternal;
   // Written into every recording; empty: left out.
   std::string mapping, up, forward;
-  std::optional<LengthUnit> length_unit;
-  std::optional<double> length_scale;  // m, instead of a unit
+  GivenLength length{};
   // Other keys of every recording, "force_plates.file=plates/{id}.csv": {id} is the recording's,
   // other names are those of `pattern`.
   std::vector<std::string> set;

@@ -10,7 +10,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/force_csv.h"
-#include "datasets/formats/trajectories.h"
+#include "datasets/formats/motion_formats.h"
 #include "datasets/loading/laboratory_record.h"
 #include "datasets/loading/motion_tracks.h"
 #include "datasets/manifest/joint_mapping.h"
@@ -83,21 +83,6 @@ struct LoadedPerson {
   std::string file_hash;  // of the file (and of the mapping, where there is one)
 };
 
-// The joints or points of a motion file that a person is read from, whatever its format.
-struct FileMotion {
-  std::vector<std::vector<Eigen::Vector3d>> tracks;  // of what is read, file's axes, metres
-  PendulumJoints places;                             // indices into tracks
-  std::vector<std::string> names;
-  std::vector<int> parents;   // of BVH joints; otherwise -1 each
-  double frame_time_s = 0.0;  // 0: neither file nor mapping says it
-  double first_time_s = 0.0;  // by the file's clock
-  double metres_per_unit = MetresPer(LengthUnit::kMillimetre);
-  // Set with all joints: who plays which role, and a BVH's hierarchy at the first frame.
-  BodyRoles roles;
-  std::optional<FileSkeleton> skeleton;
-  std::string content_hash;
-};
-
 // Turns indices into the file's joints to indices into the list of those that are read.
 std::vector<int> Among(const std::vector<int>& wanted, std::vector<int>* read) {
   std::vector<int> places;
@@ -137,128 +122,87 @@ class PersonLoader {
     const bool crowd = HoldsCrowd(entry_.motion_format) ||
                        (entry_.motion_format == MotionFormat::kCsv && IsCrowdCsv(path_));
     if (crowd && !joints_.Of(kBodyHip)) throw Error{kCrowdIsNoRecording, path_};
-    if (HasSkeleton(entry_.motion_format)) {
-      ReadSkeleton();
-    } else {
-      ReadPoints();
-    }
+    Read();
     SetRate();
     LoadedPerson loaded;
     loaded.fps = fps_;
-    loaded.file_hash = mapping_hash_ + motion_.content_hash;
+    loaded.file_hash = mapping_hash_ + file_.content_hash;
     RecordedPerson& person = loaded.person;
     person.subject_id = entry_.subjects[index_].id;
     person.mass_kg = entry_.subjects[index_].mass_kg;
     person.known = entry_.subjects[index_].known;
     person.file = path_;
-    person.skipped_s =
-        entry_.first_frame * (motion_.frame_time_s > 0.0 ? motion_.frame_time_s : 1.0 / fps_);
-    person.file_clock_s = motion_.first_time_s + person.skipped_s;
+    person.skipped_s = entry_.first_frame / (file_.rate_hz > 0.0 ? file_.rate_hz : fps_);
+    person.file_clock_s = file_.first_time_s + person.skipped_s;
     Cut();
     CloseGaps(&person);
     Turn(&person);
     Take(&person);
-    OrThrow(CheckMotion(person, motion_.metres_per_unit));
+    OrThrow(CheckMotion(person, metres_per_unit_));
     return loaded;
   }
 
  private:
-  // Chooses the joints that are read of the file's, and sets their roles where all are kept;
-  // skeleton: null for points.
-  std::vector<int> Choose(const std::vector<std::string>& names, const BvhSkeleton* skeleton) {
+  // Chooses the points that are read of the file's, and sets their roles where all are kept.
+  std::vector<int> Choose(const PointMotion& file) {
     const PendulumJoints joints =
-        OrThrow(skeleton != nullptr ? ChoosePendulumJoints(path_, *skeleton, joints_)
-                                    : ChoosePendulumPoints(path_, names, joints_));
+        OrThrow(ChoosePendulum(path_, file.names, file.skeleton.get(), joints_));
     std::vector<int> read;
     if (options_.keep_all_joints) {
-      motion_.roles = OrThrow(ChooseRoles(path_, names, skeleton, joints, joints_));
-      read.resize(names.size());
+      roles_ = OrThrow(ChooseRoles(path_, file.names, file.skeleton.get(), joints, joints_));
+      read.resize(file.names.size());
       std::iota(read.begin(), read.end(), 0);
     }
     for (const PendulumTrack& row : kPendulumTracks) {
-      motion_.places.*row.joints = Among(joints.*row.joints, &read);
+      places_.*row.joints = Among(joints.*row.joints, &read);
     }
     return read;
   }
 
-  void ReadSkeleton() {
-    motion_.metres_per_unit = MetresGiven().value_or(motion_.metres_per_unit);
-    BvhPositionOptions options;
-    options.metres_per_unit = motion_.metres_per_unit;
-    options.first_kept = entry_.first_frame;
-    options.kept_rows = options_.keep_all_joints ? 1 : 0;
-    options.choose_joints = [this](const BvhSkeleton& skeleton) {
-      return Choose(skeleton.Names(), &skeleton);
-    };
-    BvhPositions bvh = OrThrow(ReadBvhPositions(path_, options));
-    motion_.tracks = std::move(bvh.positions);
-    motion_.frame_time_s = bvh.frame_time_s;
-    motion_.content_hash = bvh.content_hash;
-    for (int joint : bvh.joints) {
-      motion_.names.push_back(bvh.skeleton.joints[joint].name);
-      motion_.parents.push_back(bvh.skeleton.joints[joint].parent);
-    }
-    if (options_.keep_all_joints) {
-      motion_.skeleton =
-          FileSkeleton{std::move(bvh.skeleton), std::move(bvh.values), motion_.metres_per_unit};
-    }
-  }
-
-  void ReadPoints() {
+  void Read() {
     PointReadOptions options;
     options.columns = mapping_.columns;
     options.time_column = mapping_.time_column;
-    options.choose = [this](const std::vector<std::string>& names) {
-      return Choose(names, nullptr);
-    };
-    PointMotion points = OrThrow(ReadPointMotion(path_, entry_.motion_format, options));
-    SetUnit(points);
-    motion_.tracks = std::move(points.positions);
-    for (Track& track : motion_.tracks) {
-      for (Eigen::Vector3d& position : track) position *= motion_.metres_per_unit;
+    options.first_kept = entry_.first_frame;
+    options.kept_rows = options_.keep_all_joints ? 1 : 0;
+    options.choose = [this](const PointMotion& file) { return Choose(file); };
+    file_ = OrThrow(ReadPointMotion(path_, entry_.motion_format, options));
+    if (mapping_.frame_rate > 0.0 && file_.skeleton == nullptr) file_.rate_hz = mapping_.frame_rate;
+    SetUnit();
+    for (Track& track : file_.positions) {
+      for (Eigen::Vector3d& position : track) position *= metres_per_unit_;
     }
     // A base of support at the origin of its log: elsewhere 0, 0, 0 is a point that was not seen.
-    for (int base : motion_.places.left_ankle) {
-      Track& track = motion_.tracks[base];
+    for (int base : places_.left_ankle) {
+      Track& track = file_.positions[base];
       const bool is_base = joints_.of_role.count(kBaseRole) > 0;
       if (is_base && NeverSeen(track)) track.assign(track.size(), Eigen::Vector3d::Zero());
     }
-    const double rate = mapping_.frame_rate > 0.0 ? mapping_.frame_rate : points.rate_hz;
-    motion_.frame_time_s = rate > 0.0 ? 1.0 / rate : 0.0;
-    motion_.first_time_s = points.first_time_s;
-    motion_.content_hash = points.content_hash;
-    for (int point : points.chosen) motion_.names.push_back(points.names[point]);
-    motion_.parents.assign(motion_.names.size(), -1);
   }
 
   // Throws where a file gives a unit that is not known and nothing else says one.
-  void SetUnit(const PointMotion& points) {
+  void SetUnit() {
     const std::optional<double> given = MetresGiven();
-    const double files = points.unit ? MetresPer(*points.unit) : motion_.metres_per_unit;
-    motion_.metres_per_unit = given.value_or(files);
-    if (!points.unit && !Trimmed(points.unit_text).empty() && !given) {
-      throw Error{"gives lengths in " + Quoted(points.unit_text) +
+    const double files = MetresPer(file_.unit.value_or(LengthUnit::kMillimetre));
+    metres_per_unit_ = given.value_or(files);
+    if (!file_.unit && !Trimmed(file_.unit_text).empty() && !given) {
+      throw Error{"gives lengths in " + Quoted(file_.unit_text) +
                       ", an unknown unit; give length_unit (" + AnyName<LengthUnit>() +
                       ") or length_scale (m) in the manifest",
                   path_};
     }
-    if (points.unit && files != motion_.metres_per_unit) {
-      Warn("gives lengths in " + NameOf(*points.unit) + "; they are read as " +
-           LengthText(motion_.metres_per_unit));
+    if (file_.unit && files != metres_per_unit_) {
+      Warn("gives lengths in " + NameOf(*file_.unit) + "; they are read as " +
+           LengthText(metres_per_unit_));
     }
   }
 
   // Metres per unit as a reader is told who does not have to believe the file; the first one
   // counts.
   std::optional<double> MetresGiven() const {
-    const std::pair<std::optional<LengthUnit>, std::optional<double>> said[] = {
-        {options_.length_unit, options_.length_scale},
-        {entry_.length_unit, entry_.length_scale},
-        {manifest_.length_unit, manifest_.length_scale},
-        {mapping_.length_unit, mapping_.length_scale}};
-    for (const auto& [unit, scale] : said) {
-      if (scale) return scale;
-      if (unit) return MetresPer(*unit);
+    for (const GivenLength* said :
+         {&options_.length, &entry_.length, &manifest_.length, &mapping_.length}) {
+      if (const std::optional<double> metres = said->Metres()) return metres;
     }
     return std::nullopt;
   }
@@ -270,20 +214,20 @@ class PersonLoader {
 
   // The manifest's rate; where it gives none, that of the file.
   void SetRate() {
-    const double frame_time_s = motion_.frame_time_s;
+    const double rate = file_.rate_hz;
     fps_ = entry_.fps;
     if (fps_ > 0.0) {
-      if (frame_time_s == 0.0 || std::abs(frame_time_s * fps_ - 1.0) <= kFrameTimeTolerance) return;
-      return Warn("has a frame time of " + Rounded(frame_time_s) + " s (" +
-                  Rounded(1.0 / frame_time_s) + " frames per second), the manifest gives " +
-                  Rounded(fps_) + " frames per second; the manifest's value is used");
+      if (rate == 0.0 || std::abs(fps_ / rate - 1.0) <= kFrameTimeTolerance) return;
+      return Warn("has a frame time of " + Rounded(1.0 / rate) + " s (" + Rounded(rate) +
+                  " frames per second), the manifest gives " + Rounded(fps_) +
+                  " frames per second; the manifest's value is used");
     }
-    if (frame_time_s == 0.0) {
+    if (rate == 0.0) {
       throw Error{
           "neither the file nor the manifest gives the frame rate; give fps in the manifest",
           path_};
     }
-    fps_ = WholeFrameRate(1.0 / frame_time_s);
+    fps_ = WholeFrameRate(rate);
     const std::string problem = FrameRateProblem(fps_);
     if (problem.empty()) return;
     throw Error{"the file's frame rate " + problem + "; give the right one as fps in the manifest",
@@ -291,7 +235,7 @@ class PersonLoader {
   }
 
   void Cut() {
-    const int frames = static_cast<int>(motion_.tracks[0].size());
+    const int frames = static_cast<int>(file_.positions[0].size());
     if (entry_.frames && *entry_.frames != frames) {
       throw Error{StrCat("wrong frame count: the file has ", frames, " frames, the manifest gives ",
                          *entry_.frames),
@@ -303,7 +247,7 @@ class PersonLoader {
                          entry_.first_frame, " and end_frame ", end),
                   path_};
     }
-    for (Track& track : motion_.tracks) {
+    for (Track& track : file_.positions) {
       track.resize(end);
       track.erase(track.begin(), track.begin() + entry_.first_frame);
     }
@@ -311,35 +255,35 @@ class PersonLoader {
 
   // A frame loses weight only by gaps of hip and ankles.
   void CloseGaps(RecordedPerson* person) {
-    const int frames = static_cast<int>(motion_.tracks[0].size());
+    const int frames = static_cast<int>(file_.positions[0].size());
     const int max_gap = static_cast<int>(std::floor(options_.preparation.max_gap_s * fps_ + 1e-9));
     std::vector<double> unused(frames, 1.0);
     std::vector<Track*> counting;
-    for (std::size_t i = 0; i < motion_.tracks.size(); ++i) {
-      Track& track = motion_.tracks[i];
+    for (std::size_t i = 0; i < file_.positions.size(); ++i) {
+      Track& track = file_.positions[i];
       const auto holds = [i](const std::vector<int>& joints) {
         return std::find(joints.begin(), joints.end(), static_cast<int>(i)) != joints.end();
       };
       if (std::any_of(std::begin(kPendulumTracks), std::end(kPendulumTracks), [&](const auto& row) {
-            return row.required && holds(motion_.places.*row.joints);
+            return row.required && holds(places_.*row.joints);
           })) {
         counting.push_back(&track);
         if (!NeverSeen(track)) continue;
-        throw Error{motion_.names[i] + " is never seen; choose another by \"joints\"", path_};
+        throw Error{file_.names[file_.chosen[i]] + " is never seen; choose another by \"joints\"",
+                    path_};
       }
       const GapCount count = FillGaps(max_gap, &track, &unused);
       // A toe or heel that is lost for long says nothing of where the foot stands, and a marker
       // that is never seen plays no role.
       for (const PendulumTrack& row : kPendulumTracks) {
-        std::vector<int>& joints = motion_.places.*row.joints;
+        std::vector<int>& joints = places_.*row.joints;
         if (count.excluded_frames > 0 && !row.required && holds(joints)) joints.clear();
       }
       if (count.excluded_frames < frames) continue;
-      BodyRoles& roles = motion_.roles;
-      for (std::vector<int>& joints : roles.joints) {
+      for (std::vector<int>& joints : roles_.joints) {
         if (holds(joints)) joints.clear();
       }
-      for (std::vector<int>* joints : {&roles.left_asis, &roles.right_asis, &roles.back}) {
+      for (std::vector<int>* joints : {&roles_.left_asis, &roles_.right_asis, &roles_.back}) {
         if (holds(*joints)) joints->clear();
       }
     }
@@ -366,31 +310,36 @@ class PersonLoader {
     person->file_up = own ? entry_.up : mapping_.up;
     person->file_forward = own ? entry_.forward : mapping_.forward;
     const Eigen::Matrix3d axes = OrThrow(AxesRotation(person->file_up, person->file_forward));
-    if (motion_.skeleton) motion_.skeleton->world_from_file = axes;
-    for (Track& track : motion_.tracks) {
+    if (file_.skeleton != nullptr && options_.keep_all_joints) {
+      person->skeleton =
+          FileSkeleton{*file_.skeleton, std::move(file_.values), metres_per_unit_, axes};
+    }
+    for (Track& track : file_.positions) {
       for (Eigen::Vector3d& position : track) position = axes * position;
     }
   }
 
   void Take(RecordedPerson* person) {
     for (const PendulumTrack& row : kPendulumTracks) {
-      person->*row.track = MeanTrack(motion_.tracks, motion_.places.*row.joints);
+      person->*row.track = MeanTrack(file_.positions, places_.*row.joints);
     }
     if (!options_.keep_all_joints) return;
-    person->joint_names = motion_.names;
-    person->joint_parents = motion_.parents;
-    person->roles = motion_.roles;
-    person->skeleton = std::move(motion_.skeleton);
-    const std::vector<int> filled = FilledRoles(motion_.roles);
-    if (!filled.empty() && UnfilledRoles(motion_.roles).empty()) {
+    for (int joint : file_.chosen) {
+      person->joint_names.push_back(file_.names[joint]);
+      person->joint_parents.push_back(
+          file_.skeleton != nullptr ? file_.skeleton->joints[joint].parent : -1);
+    }
+    person->roles = roles_;
+    const std::vector<int> filled = FilledRoles(roles_);
+    if (!filled.empty() && UnfilledRoles(roles_).empty()) {
       Warn(
           "has no joints for " + RoleList(filled) +
           ", which are filled from their neighbours; name them by \"joints\" if the file has them");
     }
-    person->joints.assign(person->hip.size(), Track(motion_.tracks.size()));
-    for (std::size_t joint = 0; joint < motion_.tracks.size(); ++joint) {
+    person->joints.assign(person->hip.size(), Track(file_.positions.size()));
+    for (std::size_t joint = 0; joint < file_.positions.size(); ++joint) {
       for (std::size_t frame = 0; frame < person->hip.size(); ++frame) {
-        person->joints[frame][joint] = motion_.tracks[joint][frame];
+        person->joints[frame][joint] = file_.positions[joint][frame];
       }
     }
   }
@@ -403,7 +352,10 @@ class PersonLoader {
   std::string path_;
   ColumnMapping mapping_;
   JointMapping joints_;
-  FileMotion motion_;
+  PointMotion file_;       // the points that are read, in metres; whatever its format
+  PendulumJoints places_;  // indices into its positions
+  BodyRoles roles_;        // set with all joints: who plays which role
+  double metres_per_unit_ = 0.0;
   std::string mapping_hash_;
   double fps_ = 0.0;
 };
@@ -452,12 +404,7 @@ LoadedPerson LoadPersonOnPlates(const ManifestRecording& entry) {
 Recording Load(const Manifest& manifest, const ManifestRecording& entry, const LoadOptions& options,
                Warnings* warnings) {
   Recording recording;
-  recording.id = entry.id;
-  recording.labels = entry.labels;
-  recording.pushed_person = entry.pushed_person;
-  recording.push_kind = entry.push_kind;
-  recording.initial_velocity = entry.initial_velocity;
-  recording.stated_errors = entry.stated_errors;
+  recording.SetFacts(entry);
   for (const std::string& misspelt : MisspeltKeys(entry)) {
     if (warnings == nullptr) continue;
     warnings->emplace_back("recording " + Quoted(entry.id) + " " + misspelt, entry.id, misspelt);

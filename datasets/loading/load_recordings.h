@@ -6,7 +6,6 @@
 //   const auto recordings = LoadRecordings("M/manifest.json", options, &warnings);
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,11 +19,9 @@
 namespace pushid {
 
 struct LoadOptions {
-  // The unit of the files' lengths, whatever they and the manifest say (--length_unit). Without it:
-  // the recording's length_unit, else the manifest's, the mapping's, the file's own, else mm.
-  std::optional<LengthUnit> length_unit;
-  // Instead of a unit, the metres in one of the files' lengths (--length_scale).
-  std::optional<double> length_scale;
+  // The files' lengths, whatever they and the manifest say (--length_unit, --length_scale). Without
+  // it: the recording's, else the manifest's, the mapping's, the file's own, else mm.
+  GivenLength length{};
   // The recordings that are read, as SelectRecordings takes them.
   std::string setting = "all";
   // Only these ids are loaded; empty: all of the setting.

@@ -181,11 +181,7 @@ double ShouldersAboveHip(const RecordedPerson& person) {
 
 PendulumRecording MakePendulumRecording(const Recording& recording) {
   PendulumRecording result;
-  result.id = recording.id;
-  result.labels = recording.labels;
-  result.pushed_person = recording.pushed_person;
-  result.initial_velocity = recording.initial_velocity;
-  result.stated_errors = recording.stated_errors;
+  result.SetFacts(recording);
   result.scene.dt = 1.0 / recording.fps;
   result.facing = FacingBeforePush(recording);
 

@@ -19,12 +19,8 @@ struct PlateFrame {
   double weight = 0.0;                               // in [0, 1]
 };
 
-struct PendulumRecording {
-  std::string id;
-  RecordingLabels labels;
-  int pushed_person = 0;
-  double facing = 0.0;  // of its people before the push, rad from x; by the ankles
-  InitialVelocity initial_velocity = InitialVelocity::kZero;
+struct PendulumRecording : RecordingFacts {
+  double facing = 0.0;                   // of its people before the push, rad from x; by the ankles
   std::vector<std::string> subject_ids;  // one per person
   std::vector<PersonFacts> known;        // one per person; empty: nothing is known of anybody
   Scene scene;
@@ -41,7 +37,6 @@ struct PendulumRecording {
   std::vector<MassDistribution> masses;  // one per person, by the segments; empty: not known
   // One per person, from the feet; empty where a recording was not made from one.
   std::vector<PersonSteps> steps;
-  StatedErrors stated_errors;
   std::string content_hash;  // of the files and of what the manifest makes of them
 
   int num_frames() const { return hip.empty() ? 0 : static_cast<int>(hip[0].size()); }

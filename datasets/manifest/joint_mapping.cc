@@ -381,15 +381,10 @@ std::string CommonPrefix(const std::vector<std::string>& names, const PendulumJo
 
 }  // namespace
 
-Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSkeleton& skeleton,
-                                            const JointMapping& mapping) {
-  return Caught([&] { return ChooseFrom({path, skeleton.Names(), &skeleton}, mapping); });
-}
-
-Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
-                                            const std::vector<std::string>& names,
-                                            const JointMapping& mapping) {
-  return Caught([&] { return ChooseFrom({path, names}, mapping); });
+Result<PendulumJoints> ChoosePendulum(const std::string& path,
+                                      const std::vector<std::string>& names,
+                                      const BvhSkeleton* skeleton, const JointMapping& mapping) {
+  return Caught([&] { return ChooseFrom({path, names, skeleton}, mapping); });
 }
 
 JointMapping Overlaid(const JointMapping& first, const JointMapping& second) {
@@ -528,8 +523,7 @@ Result<ColumnMapping> ReadColumnMapping(const std::string& path) {
     mapping.frame_rate = fields.OptionalNumber("frame_rate", "the frames per second", 0.0);
     const std::string problem = FrameRateProblem(mapping.frame_rate);
     if (fields.Has("frame_rate") && !problem.empty()) fields.Fail("frame_rate", problem);
-    mapping.length_unit = ReadLengthUnit(&fields, "length_unit");
-    mapping.length_scale = ReadLengthScale(&fields);
+    mapping.length = ReadLength(&fields);
     mapping.up = fields.OptionalText("up", "");
     mapping.forward = fields.OptionalText("forward", "");
     if (mapping.up.empty() != mapping.forward.empty()) {
@@ -571,22 +565,19 @@ JointMapping ReadJointMapping(JsonFields* fields) {
   return mapping;
 }
 
-std::optional<double> ReadLengthScale(JsonFields* fields) {
-  constexpr const char* kKey = "length_scale";
-  if (!fields->Has(kKey)) return std::nullopt;
-  const double metres = fields->Number(kKey, "the metres in one of the file's lengths");
-  if (fields->failed()) return std::nullopt;
+GivenLength ReadLength(JsonFields* fields) {
+  constexpr const char *kUnit = "length_unit", *kScale = "length_scale";
+  GivenLength given;
+  if (fields->Has(kUnit)) given.length_unit = fields->Choice(kUnit, LengthUnit::kMillimetre);
+  if (!fields->Has(kScale)) return given;
+  const double metres = fields->Number(kScale, "the metres in one of the file's lengths");
+  if (fields->failed()) return given;
   const std::string problem = LengthScaleProblem(metres);
-  if (!problem.empty()) fields->Fail(kKey, problem);
-  if (fields->Has("length_unit")) {
-    fields->Fail(kKey, "is given together with length_unit; give one of them");
-  }
-  return metres;
-}
-
-std::optional<LengthUnit> ReadLengthUnit(JsonFields* fields, const char* key) {
-  if (!fields->Has(key)) return std::nullopt;
-  return fields->Choice(key, LengthUnit::kMillimetre);
+  if (!problem.empty()) fields->Fail(kScale, problem);
+  if (given.length_unit)
+    fields->Fail(kScale, "is given together with length_unit; give one of them");
+  given.length_scale = metres;
+  return given;
 }
 
 }  // namespace pushid

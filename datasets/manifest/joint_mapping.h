@@ -47,23 +47,20 @@ inline constexpr PendulumTrack kPendulumTracks[] = {
 //           FZJ skeleton right 17 and left 21;
 //   heels   joints called LeftHeel, ...
 // Toes and heels are never required: what is not found stays empty.
-// Errors: a joint that does not exist (a few that do are listed), no ankles found, one joint twice.
-// `path` is the BVH file, for messages.
-Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSkeleton& skeleton,
-                                            const JointMapping& mapping);
-
-// The joints among named points. A name may leave out what stands before a colon ("LASI" for
-// "Anna:LASI") where that is clear. Defaults:
+// Points of other files (no skeleton) may be named without what stands before a colon ("LASI" for
+// "Anna:LASI") where that is clear. Their defaults:
 //   hip     Hips, Hip or Pelvis, otherwise the mean of the pelvis markers: LASI RASI LPSI RPSI
 //           (also as L.ASIS, ASISl, ...), LASI RASI SACR, LASI RASI;
 //   ankles  the names above, the middle of both malleoli (L_FAL and L_TAM, LAL and LAM, ...), LANK,
 //           L.Ankle.Lat, LMAL, ...
 //   toes, heels  the names above, LTOE, L.Toe.Tip, LMT2, LHEE, LCAL, ...: with the ankle's prefix
 //           ("Anna:") where several people have them
-// Errors besides the above: a default or a short name that several people's points match.
-Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
-                                            const std::vector<std::string>& names,
-                                            const JointMapping& mapping);
+// Errors: a joint that does not exist (a few that do are listed), no ankles found, one joint twice,
+// a default or a short name that several people's points match. `path` is the file, for messages;
+// skeleton: null for points.
+Result<PendulumJoints> ChoosePendulum(const std::string& path,
+                                      const std::vector<std::string>& names,
+                                      const BvhSkeleton* skeleton, const JointMapping& mapping);
 
 // `first` where it names a joint, otherwise `second`.
 JointMapping Overlaid(const JointMapping& first, const JointMapping& second);
@@ -95,9 +92,8 @@ struct ColumnMapping {
   JointMapping joints;
   std::string time_column;
   double frame_rate = 0.0;  // frames per second; 0: not said
-  std::optional<LengthUnit> length_unit;
-  std::optional<double> length_scale;  // m, instead of a unit
-  std::string up, forward;             // empty: not said
+  GivenLength length{};
+  std::string up, forward;  // empty: not said
 };
 
 // Errors name line and key; keys that are not known are Errors too, since they would do nothing.
@@ -110,11 +106,8 @@ Result<ColumnMapping> ReadColumnMapping(const std::string& path);
 inline constexpr int kBaseRole = -1;  // its key in JointMapping::others
 JointMapping ReadJointMapping(JsonFields* fields);
 
-// "mm", "cm" or "m"; nullopt when the key is not there.
-std::optional<LengthUnit> ReadLengthUnit(JsonFields* fields, const char* key);
-
-// "length_scale", the metres in one of the file's lengths; nullopt when the key is not there.
+// "length_unit" ("mm", "cm" or "m") or "length_scale", the metres in one of the file's lengths.
 // Both keys beside each other are a mistake.
-std::optional<double> ReadLengthScale(JsonFields* fields);
+GivenLength ReadLength(JsonFields* fields);
 
 }  // namespace pushid

@@ -166,8 +166,7 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
     fields.Fail(document.ErrorAt(fields.Pointer(fields.Has("up") ? "up" : "forward"),
                                  fields.label() + ": " + axes.error().message));
   }
-  recording.length_unit = ReadLengthUnit(&fields, "length_unit");
-  recording.length_scale = ReadLengthScale(&fields);
+  recording.length = ReadLength(&fields);
   ReadPushes(&fields, &recording);
   recording.initial_velocity = fields.Choice("initial_velocity", InitialVelocity::kZero);
   recording.ground = ReadGroundKey(&fields);
@@ -280,9 +279,10 @@ Json RecordingJson(const ManifestRecording& recording) {
   SetUnless(joints.empty(), "joints", joints, &json);
   SetOrKeep(recording.up == "z", "up", recording.up, &json);
   SetOrKeep(recording.forward == "x", "forward", recording.forward, &json);
-  SetUnless(!recording.length_unit, "length_unit",
-            recording.length_unit ? NameOf(*recording.length_unit) : "", &json);
-  SetUnless(!recording.length_scale, "length_scale", recording.length_scale.value_or(0.0), &json);
+  const GivenLength& length = recording.length;
+  SetUnless(!length.length_unit, "length_unit",
+            length.length_unit ? NameOf(*length.length_unit) : "", &json);
+  SetUnless(!length.length_scale, "length_scale", length.length_scale.value_or(0.0), &json);
   Json pushes = ObjectsUnder(json, "pushes", recording.pushes.size());
   for (std::size_t i = 0; i < recording.pushes.size(); ++i) {
     pushes[i]["person"] = recording.pushes[i].person;
@@ -373,14 +373,15 @@ Result<Manifest> ReadManifest(const std::string& path) {
     if (!top.failed() && recordings.empty()) {
       top.Fail("recordings", "is empty: the manifest lists no recordings");
     }
+    std::optional<LengthUnit> of_units;
     if (top.Has("units") && top.At("units").is_object()) {
       JsonFields units = top.Inside(top.At("units"), "units", "units");
-      manifest.length_unit = ReadLengthUnit(&units, "bvh_length");
+      if (units.Has("bvh_length")) of_units = units.Choice("bvh_length", LengthUnit::kMillimetre);
       top.Fail(units.error());
     }
-    if (top.Has("length_unit")) manifest.length_unit = ReadLengthUnit(&top, "length_unit");
-    manifest.length_scale = ReadLengthScale(&top);
-    if (manifest.length_scale && manifest.length_unit && !top.failed()) {
+    manifest.length = ReadLength(&top);
+    if (!manifest.length.length_unit) manifest.length.length_unit = of_units;
+    if (manifest.length.length_scale && of_units && !top.failed()) {
       top.Fail("length_scale", "is given together with units.bvh_length; give one of them");
     }
     manifest.stated_errors = ReadStatedErrors(&top, {});
@@ -414,13 +415,9 @@ Result<Manifest> ReadManifest(const std::string& path) {
 
 ManifestRecording EntryOf(const Recording& recording) {
   ManifestRecording entry;
-  entry.id = recording.id;
-  entry.labels = recording.labels;
+  entry.SetFacts(recording);
   entry.fps = recording.fps;
   entry.frames = recording.num_frames();
-  entry.pushed_person = recording.pushed_person;
-  entry.push_kind = recording.push_kind;
-  entry.initial_velocity = recording.initial_velocity;
   return entry;
 }
 
@@ -428,25 +425,16 @@ MaybeError WriteManifest(const std::string& path, const Manifest& manifest) {
   Json json = Json::object();
   if (manifest.path.empty()) json["schema"] = kSchema;  // what was read stays as it was
   if (manifest.json->is_object()) json.update(*manifest.json);
-  if (manifest.length_unit) {
-    const std::string name = NameOf(*manifest.length_unit);
+  if (manifest.length.length_unit) {
+    const std::string name = NameOf(*manifest.length.length_unit);
     const bool in_units =
         json.contains("units") && json["units"].is_object() && json["units"].contains("bvh_length");
     if (in_units) json["units"]["bvh_length"] = name;
     if (!in_units || json.contains("length_unit")) json["length_unit"] = name;
   }
-  if (manifest.length_scale) json["length_scale"] = *manifest.length_scale;
+  if (manifest.length.length_scale) json["length_scale"] = *manifest.length.length_scale;
   Json recordings = Json::array();
   for (const ManifestRecording& recording : manifest.recordings) {
-    bool finite = std::isfinite(recording.fps);
-    for (const ManifestSubject& subject : recording.subjects) {
-      finite = finite && std::isfinite(subject.mass_kg);
-    }
-    if (!finite) {
-      return Error{
-          "recording " + recording.id + " cannot be written: its fps or a mass is not finite", path,
-          0};
-    }
     recordings.push_back(RecordingJson(recording));
   }
   json["recordings"] = recordings;
@@ -456,6 +444,14 @@ MaybeError WriteManifest(const std::string& path, const Manifest& manifest) {
 std::string ResolvePath(const std::string& manifest_path, const std::string& file) {
   // operator/ takes an absolute right-hand side as it is.
   return (std::filesystem::path(manifest_path).parent_path() / file).string();
+}
+
+std::string PathFromManifest(const std::string& manifest_path, const std::string& file) {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  const fs::path whole = fs::absolute(file);
+  const fs::path path = fs::proximate(whole, fs::absolute(manifest_path).parent_path(), failed);
+  return (failed ? whole : path).generic_string();
 }
 
 Result<std::vector<int>> SelectRecordings(const Manifest& manifest, const std::string& setting,
@@ -563,10 +559,7 @@ Result<Manifest> ReadManifests(const std::string& list) {
                          " kg here and " + Rounded(said.mass_kg) + " kg in " + said.where +
                          "; other people need other ids");
         }
-        if (!entry.length_unit && !entry.length_scale) {
-          entry.length_unit = manifest.length_unit;
-          entry.length_scale = manifest.length_scale;
-        }
+        if (!entry.length.Metres()) entry.length = manifest.length;
         merged.recordings.push_back(std::move(entry));
       }
     }

@@ -68,29 +68,22 @@ struct ManifestPush {
   int start_frame = 0;
 };
 
-struct ManifestRecording {
-  std::string id;
-  RecordingLabels labels;
+struct ManifestRecording : RecordingFacts {
   double fps = 0.0;  // 0: as the motion's files say
   std::vector<ManifestSubject> subjects;
-  int pushed_person = 0;
   MotionFormat motion_format = MotionFormat::kBvh;
-  std::vector<std::string> motion;  // files, one per subject, relative to the manifest
-  bool plates_alone = false;        // "motion": "none": there are no such files
-  std::string mapping;              // relative to the manifest; empty: none
-  std::string push_csv;             // relative to the manifest; empty: no push at frame 0
-  PushKind push_kind = PushKind::kExternal;
+  std::vector<std::string> motion;      // files, one per subject, relative to the manifest
+  bool plates_alone = false;            // "motion": "none": there are no such files
+  std::string mapping;                  // relative to the manifest; empty: none
+  std::string push_csv;                 // relative to the manifest; empty: no push at frame 0
   std::optional<double> push_height_m;  // of pushes whose files have no torques; unset: the hip
   JointMapping joints;
   std::string up = "z";       // axis of the BVH that points up
   std::string forward = "x";  // axis of the BVH that points forward, in the push direction
-  std::optional<LengthUnit> length_unit;
-  std::optional<double> length_scale;  // m in one of the file's lengths, instead of a unit
+  GivenLength length{};
   std::vector<ManifestPush> pushes;
-  InitialVelocity initial_velocity = InitialVelocity::kZero;
   ManifestGround ground;
   std::vector<ManifestPlates> plates;
-  StatedErrors stated_errors;
   std::optional<int> frames;     // checked against the file when given
   int first_frame = 0;           // of the file, from 0, that becomes frame 0
   std::optional<int> end_frame;  // of the file, behind the last one used
@@ -106,10 +99,8 @@ struct ManifestRecording {
 ManifestRecording EntryOf(const Recording& recording);
 
 struct Manifest {
-  std::string path;  // the file (or files) it was read from, for messages
-  // The unit of recordings that do not give their own.
-  std::optional<LengthUnit> length_unit;
-  std::optional<double> length_scale;
+  std::string path;      // the file (or files) it was read from, for messages
+  GivenLength length{};  // of recordings that do not give their own
   StatedErrors stated_errors;
   std::vector<ManifestRecording> recordings;
   KeptJson json;  // the top level, without `recordings`
@@ -128,6 +119,8 @@ MaybeError WriteManifest(const std::string& path, const Manifest& manifest);
 
 // "push/a.csv" as named by the manifest at `manifest_path`: relative to its folder unless absolute.
 std::string ResolvePath(const std::string& manifest_path, const std::string& file);
+// The other way: the name of a file in that manifest.
+std::string PathFromManifest(const std::string& manifest_path, const std::string& file);
 
 // The entry with one of its keys set, read anew: "ground.csv" is csv under ground. value: JSON, or
 // else a text. Errors: those of ReadManifest.

@@ -109,6 +109,18 @@ constexpr EnumNames<InitialVelocity, 3> Names(InitialVelocity) {
            {"free", InitialVelocity::kFree}}};
 }
 
+// What is said of a recording as a whole, from its entry in a manifest on.
+struct RecordingFacts {
+  std::string id;
+  RecordingLabels labels;
+  int pushed_person = 0;
+  PushKind push_kind = PushKind::kExternal;
+  InitialVelocity initial_velocity = InitialVelocity::kZero;
+  StatedErrors stated_errors;
+
+  void SetFacts(const RecordingFacts& facts) { *this = facts; }
+};
+
 // A generalized force [fx N, fy N, ftheta N m, fphi N m]; row i drives the step from frame
 // start_frame + i to the next.
 struct Push {
@@ -171,18 +183,12 @@ struct RecordedPerson {
   std::optional<FileSkeleton> skeleton;  // of a BVH file, beside its joints
 };
 
-struct Recording {
-  std::string id;
-  RecordingLabels labels;
+struct Recording : RecordingFacts {
   double fps = 0.0;
-  int pushed_person = 0;
-  PushKind push_kind = PushKind::kExternal;
-  InitialVelocity initial_velocity = InitialVelocity::kZero;
   std::vector<RecordedPerson> people;
   std::vector<Push> pushes;
   std::vector<GroundPose> ground;  // one per frame, in the laboratory; empty: it does not move
-  StatedErrors stated_errors;
-  std::string content_hash;  // of every file it was read from, for provenance
+  std::string content_hash;        // of every file it was read from, for provenance
 
   int num_frames() const { return people.empty() ? 0 : static_cast<int>(people[0].hip.size()); }
 };

@@ -62,9 +62,7 @@ class Platform {
     int pressed = 0, outside = 0;
     double farthest = 0.0;
     for (std::size_t i = 0; i < num_samples(); ++i) {
-      Vector3d force, centre;  // in the platform's axes; the centre on its surface
-      double free_moment = 0.0;
-      Sample(i, &force, &centre, &free_moment);
+      const auto [force, centre] = Sample(i);
       if (!force.allFinite()) {
         throw Error{StrCat(name_, " is not finite at sample ", i), file_.path};
       }
@@ -72,8 +70,6 @@ class Platform {
       record_.force.push_back(axes_ * force);
       record_.centre.push_back(presses ? Vector3d(centre_ + axes_ * centre)
                                        : Vector3d::Constant(kNaN));
-      // About z, which points inwards.
-      record_.free_moment.push_back(presses ? -free_moment : 0.0);
       impulse += record_.force.back();
       if (!presses) continue;
       ++pressed;
@@ -89,7 +85,6 @@ class Platform {
     }
     if (impulse.dot(record_.normal) < 0.0) {
       for (Vector3d& force : record_.force) force = -force;
-      for (double& moment : record_.free_moment) moment = -moment;
     }
     return std::move(record_);
   }
@@ -253,18 +248,13 @@ class Platform {
     return read;
   }
 
-  void Sample(std::size_t i, Vector3d* force, Vector3d* centre, double* free_moment) const {
+  // Force and centre of pressure, on the surface, in the platform's axes.
+  std::pair<Vector3d, Vector3d> Sample(std::size_t i) const {
     const Vector6 read = Read(i);
-    *force = read.head<3>();
-    if (platform_.type == 1) {
-      *centre = {read[3], read[4], 0.0};
-      *free_moment = read[5];
-      return;
-    }
-    const Vector3d moment = read.tail<3>() + force->cross(origin_);
-    const double x = -moment.y() / force->z(), y = moment.x() / force->z();
-    *centre = {x, y, 0.0};
-    *free_moment = moment.z() - x * force->y() + y * force->x();
+    const Vector3d force = read.head<3>();
+    if (platform_.type == 1) return {force, {read[3], read[4], 0.0}};
+    const Vector3d moment = read.tail<3>() + force.cross(origin_);
+    return {force, {-moment.y() / force.z(), moment.x() / force.z(), 0.0}};
   }
 
   const C3dFile& file_;

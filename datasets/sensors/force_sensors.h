@@ -63,7 +63,7 @@ void SubtractRest(SensorRecord* record);
 // Files are relative to the list. Also up and forward.
 Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path);
 
-// Measurements of a force platform of a C3D file: force, centre of pressure, free moment.
+// Measurements of a force platform of a C3D file: force and centre of pressure.
 //
 // The four types of the C3D manual differ in what the channels are:
 //   1  Fx Fy Fz Px Py Tz          centre of pressure measured
@@ -75,8 +75,8 @@ Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path);
 // In the platform's axes, at the centre of its surface: M_s = M + F x ORIGIN (ORIGIN: from the
 // sensors' origin to the surface; type 3: [0, 0, az0]; z points into the platform, so ORIGIN_z is
 // negative; ORIGIN with a positive one is from the surface to the sensors, and negated as a whole).
-// Centre of pressure (-My/Fz, Mx/Fz), free moment Tz = Mz - x Fy + y Fx. Axes from the corners 1
-// (+x, +y), 2 (-x, +y), 3 (-x, -y), 4 (+x, -y). Of type 3, a and b are taken without their sign.
+// Centre of pressure (-My/Fz, Mx/Fz). Axes from the corners 1 (+x, +y), 2 (-x, +y), 3 (-x, -y), 4
+// (+x, -y). Of type 3, a and b are taken without their sign.
 struct PlatformRecord {
   double rate_hz = 0.0;
   // The force on the person at each sample, in the file's axes: programs store either it or its
@@ -85,7 +85,6 @@ struct PlatformRecord {
   std::vector<Eigen::Vector3d> force;  // N
   // Points on the surface; NaN where the platform is pressed with less than kPressed.
   std::vector<Eigen::Vector3d> centre;                // m
-  std::vector<double> free_moment;                    // N m on the person, about the outward normal
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // out of the surface
   std::string outside;  // a sentence where most centres lie beyond the corners by kOffPlate
   std::vector<std::string> warnings;  // "platform:1 has no ORIGIN; ..."

@@ -437,7 +437,7 @@ MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOp
   return Caught([&] {
     for (const char* sub : {"/bvh", "/push"}) OrThrow(MakeFolder(folder + sub));
     Manifest manifest;
-    manifest.length_unit = kUnit;
+    manifest.length.length_unit = kUnit;
     auto& about = (*manifest.json)["synthetic"];
     about["seed"] = options.seed;
     about["stance"] = NameOf(options.model.stance);

@@ -145,7 +145,7 @@ MaybeError WriteFormationRecording(const std::string& folder, const FormationRun
     }
   }
   Manifest manifest;
-  manifest.length_unit = kUnit;
+  manifest.length.length_unit = kUnit;
   (*manifest.json)["synthetic"]["formation"] = true;  // made by a model: may be overwritten
   manifest.recordings = {entry};
   return WriteManifest(folder + "/manifest.json", manifest);

@@ -467,7 +467,7 @@ Result<std::vector<MeasuredWave>> MeasureWaves(const std::string& path) {
     return waves;
   }
   const std::optional<MotionFormat> format = MotionFormatInFile(path);
-  if (!format || HasSkeleton(*format) || !(HoldsCrowd(*format) || *format == MotionFormat::kCsv)) {
+  if (!format || !(HoldsCrowd(*format) || *format == MotionFormat::kCsv)) {
     return Error{
         "a wave is measured from one point a person: trajectories (.txt, or .csv with the header "
         "id,frame,x,y), a table with three columns for each person (.csv), or a manifest of groups",

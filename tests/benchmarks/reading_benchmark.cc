@@ -121,12 +121,12 @@ void CountBytes(const std::string& path, benchmark::State* state) {
 
 void BM_ReadBvhHipAndAnkles(benchmark::State& state) {
   const std::string path = Files().File("a.bvh", &MakeBvh);
-  BvhPositionOptions options;
-  options.choose_joints = [](const BvhSkeleton&) {
+  PointReadOptions options;
+  options.choose = [](const PointMotion&) {
     return std::vector<int>{kHipJoint, kLeftAnkleJoint, kRightAnkleJoint};
   };
   for (auto _ : state) {
-    const auto read = ReadBvhPositions(path, options);
+    const auto read = ReadBvhPoints(path, options);
     if (!read.ok()) std::abort();
     benchmark::DoNotOptimize(read.value().positions[0].back());
   }
@@ -136,7 +136,7 @@ BENCHMARK(BM_ReadBvhHipAndAnkles)->Unit(benchmark::kMillisecond);
 
 void ReadPoints(benchmark::State& state, const std::string& path, MotionFormat format) {
   PointReadOptions options;
-  options.choose = [](const std::vector<std::string>&) { return std::vector<int>{0, 10, 20}; };
+  options.choose = [](const PointMotion&) { return std::vector<int>{0, 10, 20}; };
   for (auto _ : state) {
     const auto read = ReadPointMotion(path, format, options);
     if (!read.ok()) std::abort();

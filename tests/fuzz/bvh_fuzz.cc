@@ -8,14 +8,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static MemoryFile file;
   const CpuLimit limit;
   const std::string& path = file.Fill(data, size);
-  BvhPositionOptions raw;
+  PointReadOptions raw;
   raw.kept_rows = 1 << 30;
-  const Result<BvhPositions> values = ReadBvhPositions(path, raw);
-  const Result<BvhPositions> positions = ReadBvhPositions(path);
+  const Result<PointMotion> values = ReadBvhPoints(path, raw);
+  const Result<PointMotion> positions = ReadBvhPoints(path);
   Demand(values.ok() == positions.ok());
   if (!values.ok()) return 0;
-  const BvhPositions& read = values.value();
+  const PointMotion& read = values.value();
   Demand(read.num_frames() == positions.value().num_frames());
-  Demand(static_cast<int>(read.values.size()) == read.num_frames() * read.skeleton.num_channels());
+  Demand(static_cast<int>(read.values.size()) == read.num_frames() * read.skeleton->num_channels());
   return 0;
 }

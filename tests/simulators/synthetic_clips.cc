@@ -280,7 +280,7 @@ MaybeError WriteSyntheticTurns(const std::string& folder, const SyntheticTurnsOp
   return Caught([&] {
     OrThrow(MakeFolder(folder + "/bvh"));
     Manifest manifest;
-    manifest.length_unit = kTurnsUnit;
+    manifest.length.length_unit = kTurnsUnit;
     manifest.json->update(nlohmann::ordered_json{{"synthetic", TruthJson(options.seed)}});
     std::vector<RecordedStates> states;
     Random seeds(options.seed);

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "datasets/files/names.h"
-#include "datasets/formats/bvh.h"
 #include "tests/apps/any_skeleton_fixture.h"
 #include "tests/apps/app_fixture.h"
+#include "tests/datasets/raw_bvh.h"
 
 namespace pushid {
 namespace {
@@ -64,7 +64,7 @@ TEST_F(RestorationAppTest, TrainsEvaluatesAndPredicts) {
       RunApp("pushid-predict", {model_, Recordings(), restoration, "--id=" + id_,
                                 "--out=" + Path("m.bvh"), "--poses_out=" + Path("j.csv")}));
   EXPECT_TRUE(Contains(predict.out, "MPJPE"));
-  const auto bvh = Unwrapped(ReadBvhPositions(Path("m.bvh")));
+  const auto bvh = BvhInMetres(Path("m.bvh"));
   EXPECT_EQ(bvh.num_frames(), 45);
   const std::vector<Eigen::Vector3d> joints = JointsOf(Path("j.csv"));
   EXPECT_LT((joints[44 * 22 + 9] - bvh.positions[9][44]).norm(), 4e-5);

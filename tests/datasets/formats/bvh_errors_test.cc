@@ -105,7 +105,7 @@ TEST_F(BvhErrorsTest, EveryDamageIsNamedWithItsLine) {
     ASSERT_NE(at, std::string::npos) << damage.from;
     text.replace(at, std::string(damage.from).size(), damage.to);
     const std::string path = WriteText("bad.bvh", text);
-    const Result<BvhPositions> positions = ReadBvhPositions(path);
+    const Result<PointMotion> positions = ReadBvhPoints(path);
     const Result<BvhMotion> motion = ReadBvh(path);
     SCOPED_TRACE(std::string(damage.from) + " -> " + damage.to);
     ASSERT_FALSE(positions.ok());
@@ -163,11 +163,11 @@ TEST_F(BvhErrorsTest, NumbersInEveryForm) {
                                  "\nMOTION\nFrames: 2\nFrame Time: 1\n" + row + "\n" + row + "\n");
   const BvhMotion read = Unwrapped(ReadBvh(path));
   // Where nobody asks for their values too; otherwise all are kept.
-  BvhPositionOptions of_root;
-  of_root.choose_joints = [](const BvhSkeleton&) { return std::vector<int>{0}; };
-  EXPECT_EQ(Unwrapped(ReadBvhPositions(path, of_root)).positions[0].size(), 2u);
+  PointReadOptions of_root;
+  of_root.choose = [](const PointMotion&) { return std::vector<int>{0}; };
+  EXPECT_EQ(Unwrapped(ReadBvhPoints(path, of_root)).positions[0].size(), 2u);
   of_root.kept_rows = 1 << 30;
-  EXPECT_EQ(Unwrapped(ReadBvhPositions(path, of_root)).values, read.values);
+  EXPECT_EQ(Unwrapped(ReadBvhPoints(path, of_root)).values, read.values);
   ASSERT_EQ(read.values.size(), 2 * tokens.size());
   for (std::size_t i = 0; i < tokens.size(); ++i) {
     const double expected = std::strtod(tokens[i].c_str(), nullptr);

@@ -139,13 +139,10 @@ TEST_F(BvhTest, WrittenMotionReadsBackBitForBit) {
 
 TEST_F(BvhTest, UnitsOfTheFileDoNotChangePositions) {
   const BvhMotion motion = RandomMotion(7);
-  std::vector<BvhPositions> positions;
+  std::vector<PointMotion> positions;
   for (double metres : {1e-3, 1e-2, 1.0}) {
     ASSERT_FALSE(WriteBvh(Path("a.bvh"), Scaled(motion, 1e-3 / metres)));
-    BvhPositionOptions options;
-    options.metres_per_unit = metres;
-    BvhPositions read = Unwrapped(ReadBvhPositions(Path("a.bvh"), options));
-    positions.push_back(read);
+    positions.push_back(BvhInMetres(Path("a.bvh"), metres));
   }
   ASSERT_EQ(positions[0].positions.size(), 8u);
   for (std::size_t joint = 0; joint < 8; ++joint) {
@@ -187,12 +184,12 @@ TEST_F(BvhTest, WriterRefusesWhatNobodyCouldRead) {
 
 TEST_F(BvhTest, PositionsAreThoseAskedForAndTheHashIsTheFiles) {
   const std::string path = WriteText("a.bvh", kTwoJoints);
-  BvhPositionOptions options;
-  options.choose_joints = [](const BvhSkeleton& skeleton) {
-    return std::vector<int>{skeleton.Find("Left Leg")};
+  PointReadOptions options;
+  options.choose = [](const PointMotion& file) {
+    return std::vector<int>{file.skeleton->Find("Left Leg")};
   };
-  const BvhPositions read = Unwrapped(ReadBvhPositions(path, options));
-  EXPECT_EQ(read.joints, std::vector<int>{1});
+  const PointMotion read = Unwrapped(ReadBvhPoints(path, options));
+  EXPECT_EQ(read.chosen, std::vector<int>{1});
   EXPECT_EQ(read.num_frames(), 2);
   EXPECT_EQ(read.content_hash, HashFile(path).value());
 }
@@ -210,10 +207,10 @@ TEST_F(BvhTest, VeryDeepHierarchy) {
     for (int i = 0; i < 3 * kJoints; ++i) text += "0.000000 ";
     text += "\n";
   }
-  BvhPositionOptions options;
-  options.choose_joints = [](const BvhSkeleton&) { return std::vector<int>{kJoints - 1}; };
-  const BvhPositions read = Unwrapped(ReadBvhPositions(WriteText("deep.bvh", text), options));
-  EXPECT_NEAR(read.positions[0][2].z(), 60.0, 1e-9);
+  PointReadOptions options;
+  options.choose = [](const PointMotion&) { return std::vector<int>{kJoints - 1}; };
+  const PointMotion read = Unwrapped(ReadBvhPoints(WriteText("deep.bvh", text), options));
+  EXPECT_NEAR(read.positions[0][2].z(), 60000.0, 1e-6);
 }
 
 }  // namespace

@@ -70,8 +70,8 @@ TEST_F(PointFilesTest, TrcOfOtherPrograms) {
 
 TEST_F(PointFilesTest, TrcKeepsOnlyWhatIsChosen) {
   PointReadOptions options;
-  options.choose = [](const std::vector<std::string>& names) {
-    return std::vector<int>{static_cast<int>(names.size()) - 1};
+  options.choose = [](const PointMotion& file) {
+    return std::vector<int>{static_cast<int>(file.names.size()) - 1};
   };
   const PointMotion read = Unwrapped(ReadTrc(WriteText("a.trc", kTrc), options));
   EXPECT_EQ(read.chosen, std::vector<int>{1});
@@ -245,7 +245,7 @@ TEST_F(PointFilesTest, MappingFiles) {
   EXPECT_EQ(mapping.columns[0].y, "wy");
   EXPECT_EQ(mapping.joints.Of(kBodyHip)->mean_of[1].index, 3);
   EXPECT_EQ(mapping.frame_rate, 100.0);
-  EXPECT_EQ(mapping.length_unit, LengthUnit::kCentimetre);
+  EXPECT_EQ(mapping.length.length_unit, LengthUnit::kCentimetre);
   const std::vector<std::pair<std::string, std::string>> bad = {
       {"{\"colums\": {}}", "colums is not known"},
       {"{\"columns\": {\"a\": [\"x\", \"y\"]}}", "columns of 'a' must be three column names"},

@@ -33,7 +33,7 @@ TEST_F(TrajectoriesTest, Text) {
   EXPECT_FALSE(motion.positions[1][0].allFinite());
   EXPECT_EQ(motion.positions[1][1], Eigen::Vector3d(0, -5, 160));
   PointReadOptions options;
-  options.choose = [](const std::vector<std::string>&) { return std::vector<int>{1}; };
+  options.choose = [](const PointMotion&) { return std::vector<int>{1}; };
   const Result<PointMotion> one = ReadTrajectoryText(path, options);
   ASSERT_EQ(one.value().positions.size(), 1u);
   EXPECT_EQ(one.value().positions[0].size(), 2u);

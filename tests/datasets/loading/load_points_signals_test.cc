@@ -17,7 +17,7 @@ TEST_F(LoadPointSignalsTest, UnitsOfTheFile) {
   }
   Use("a.trc", MotionFormat::kTrc);
   ExpectTheWalker();  // TRC says m
-  manifest_.length_unit = LengthUnit::kMillimetre;
+  manifest_.length.length_unit = LengthUnit::kMillimetre;
   EXPECT_TRUE(Contains(Message(), "looks like m, pass --length_unit=m"));
   EXPECT_TRUE(Contains(warnings_[0].text, "gives lengths in m; they are read as mm"));
 }
@@ -37,7 +37,7 @@ TEST_F(LoadPointSignalsTest, UnitsInOtherSpellings) {
   EXPECT_EQ(FromName<LengthUnit>("metres"), LengthUnit::kMetre);
   with_unit("inch");
   EXPECT_TRUE(Contains(Message(), "a.trc: recording 'a': gives lengths in 'inch'"));
-  entry().length_unit = LengthUnit::kMillimetre;
+  entry().length.length_unit = LengthUnit::kMillimetre;
   ExpectTheWalker();
 }
 

@@ -149,7 +149,7 @@ TEST_F(LoadPointsTest, AnklesOfTheCommonMarkerSets) {
       {{"pelvis", "l_foot", "r_foot"}, {1}},
   };
   for (const auto& [names, left] : sets) {
-    const auto chosen = Unwrapped(ChoosePendulumPoints("x", names, {}));
+    const auto chosen = Unwrapped(ChoosePendulum("x", names, nullptr, {}));
     EXPECT_EQ(chosen.left_ankle, left) << names[1];
     EXPECT_EQ(chosen.right_ankle.size(), left.size()) << names[1];
   }
@@ -163,15 +163,16 @@ TEST_F(LoadPointsTest, ToesOfSeveralPeople) {
   of_b.Set(kBodyHip, JointReference{"B:Hips"});
   of_b.Set(kLeftAnkle, JointReference{"B:LANK"});
   of_b.Set(kRightAnkle, JointReference{"B:RANK"});
-  const auto b = Unwrapped(ChoosePendulumPoints("x", names, of_b));
+  const auto b = Unwrapped(ChoosePendulum("x", names, nullptr, of_b));
   EXPECT_EQ(b.left_toe, std::vector<int>{7});
   EXPECT_EQ(b.right_toe, std::vector<int>{9});
   EXPECT_TRUE(b.left_heel.empty());
-  const auto smpl = Unwrapped(ChoosePendulumPoints(
-      "x", {"Pelvis", "L_Ankle", "R_Ankle", "L_Foot", "R_Foot", "L_Heel", "R_Heel"}, {}));
+  const auto smpl = Unwrapped(ChoosePendulum(
+      "x", {"Pelvis", "L_Ankle", "R_Ankle", "L_Foot", "R_Foot", "L_Heel", "R_Heel"}, nullptr, {}));
   EXPECT_EQ(smpl.left_toe, std::vector<int>{3});
   EXPECT_EQ(smpl.right_heel, std::vector<int>{6});
-  const auto foot = ChoosePendulumPoints("x", {"Hips", "LeftFoot", "RightFoot", "LeftToeBase"}, {});
+  const auto foot =
+      ChoosePendulum("x", {"Hips", "LeftFoot", "RightFoot", "LeftToeBase"}, nullptr, {});
   EXPECT_EQ(foot.value().left_ankle, std::vector<int>{1});
   EXPECT_EQ(foot.value().left_toe, std::vector<int>{3});
   EXPECT_TRUE(foot.value().right_toe.empty());

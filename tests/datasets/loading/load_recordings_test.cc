@@ -75,18 +75,18 @@ TEST_F(LoadRecordingsTest, HashFollowsTheContents) {
 TEST_F(LoadRecordingsTest, UnitsFromFlagRecordingAndManifest) {
   WriteBvhFile("a.bvh", Walker(20), LengthUnit::kCentimetre);
   EXPECT_TRUE(Contains(Message(), "looks like cm, pass --length_unit=cm"));
-  manifest_.length_unit = LengthUnit::kCentimetre;
+  manifest_.length.length_unit = LengthUnit::kCentimetre;
   EXPECT_NEAR(Load().value()[0].people[0].hip[0].z(), 0.95, 1e-12);
-  entry().length_unit = LengthUnit::kMetre;
+  entry().length.length_unit = LengthUnit::kMetre;
   EXPECT_TRUE(Contains(Message(), "when lengths are read as m: looks like cm"));
   LoadOptions options;
-  options.length_unit = LengthUnit::kCentimetre;
+  options.length.length_unit = LengthUnit::kCentimetre;
   EXPECT_NEAR(Load(options).value()[0].people[0].hip[0].z(), 0.95, 1e-12);
 }
 
 TEST_F(LoadRecordingsTest, UnitsThatCannotBeRight) {
   LoadOptions options;
-  options.length_unit = LengthUnit::kMetre;
+  options.length.length_unit = LengthUnit::kMetre;
   EXPECT_EQ(Message(options),
             Path("a.bvh") +
                 ": recording 'a': the hip is 870 m high above the ankles when lengths are "
@@ -162,21 +162,21 @@ TEST_F(LoadRecordingsTest, AScaleInsteadOfAUnit) {
   }
   WriteBvhFile("a.bvh", odd, LengthUnit::kMetre);
   EXPECT_TRUE(Contains(Message(), "--length_scale"));
-  entry().length_scale = 0.0564;
+  entry().length.length_scale = 0.0564;
   auto loaded = Load();
   ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
   EXPECT_NEAR(loaded.value()[0].people[0].hip[0].z(), 0.95, 1e-12);
-  entry().length_scale.reset();
-  manifest_.length_scale = 0.0564;
+  entry().length.length_scale.reset();
+  manifest_.length.length_scale = 0.0564;
   EXPECT_TRUE(Load().ok());
-  entry().length_unit = LengthUnit::kMillimetre;
+  entry().length.length_unit = LengthUnit::kMillimetre;
   EXPECT_TRUE(Contains(Message(), "read as mm"));
   LoadOptions options;
-  options.length_scale = 0.0564;
+  options.length.length_scale = 0.0564;
   loaded = Load(options);
   ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
   EXPECT_NEAR(loaded.value()[0].people[0].left_ankle[0].z(), 0.08, 1e-12);
-  options.length_scale = 0.5;
+  options.length.length_scale = 0.5;
   EXPECT_TRUE(Contains(Message(options), "read as 0.5 m each"));
 }
 
@@ -362,7 +362,7 @@ TEST_F(LoadRecordingsTest, BadFilesAreNamed) {
   BvhMotion motion = Walker(20);
   motion.values[18 * 7] = 1e300;
   WriteBvhFile("a.bvh", motion, LengthUnit::kMetre);
-  entry().length_unit = LengthUnit::kMetre;
+  entry().length.length_unit = LengthUnit::kMetre;
   EXPECT_TRUE(Contains(Message(), "m from the origin at frame 7"));
 }
 

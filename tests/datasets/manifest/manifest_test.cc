@@ -74,7 +74,7 @@ TEST_F(ManifestTest, StatedErrors) {
 
 TEST_F(ManifestTest, ReadsEverything) {
   const Manifest read = Unwrapped(ReadManifest(WriteText("manifest.json", kGoodManifest)));
-  EXPECT_EQ(read.length_unit, LengthUnit::kCentimetre);
+  EXPECT_EQ(read.length.length_unit, LengthUnit::kCentimetre);
   ASSERT_EQ(read.recordings.size(), 2u);
   const ManifestRecording& a = read.recordings[0];
   EXPECT_EQ(a.id, "a");
@@ -89,7 +89,7 @@ TEST_F(ManifestTest, ReadsEverything) {
   EXPECT_EQ(a.labels.magnitude(), "weak");
   EXPECT_EQ(a.up, "z");
   EXPECT_EQ(a.initial_velocity, InitialVelocity::kZero);
-  EXPECT_FALSE(a.length_unit || a.frames || a.joints.Of(kBodyHip));
+  EXPECT_FALSE(a.length.length_unit || a.frames || a.joints.Of(kBodyHip));
   EXPECT_EQ(a.line, 5);
 
   const ManifestRecording& b = read.recordings[1];
@@ -106,7 +106,7 @@ TEST_F(ManifestTest, ReadsEverything) {
   EXPECT_EQ(b.joints.Of(kLeftAnkle)->index, 3);
   EXPECT_FALSE(b.joints.Of(kRightAnkle));
   EXPECT_EQ(b.up, "+y");
-  EXPECT_EQ(b.length_unit, LengthUnit::kMetre);
+  EXPECT_EQ(b.length.length_unit, LengthUnit::kMetre);
   ASSERT_EQ(b.pushes.size(), 1u);
   EXPECT_EQ(b.pushes[0].csv, "push/b.csv");
   EXPECT_EQ(b.pushes[0].start_frame, 12);
@@ -131,16 +131,16 @@ TEST_F(ManifestTest, RewritingLosesNothing) {
 
 TEST_F(ManifestTest, ChangesAreWritten) {
   Manifest manifest = Unwrapped(ReadManifest(WriteText("manifest.json", kGoodManifest)));
-  manifest.length_unit = LengthUnit::kMillimetre;
+  manifest.length.length_unit = LengthUnit::kMillimetre;
   manifest.recordings[0].push_csv = "";
   manifest.recordings[0].initial_velocity = InitialVelocity::kEstimated;
   manifest.recordings[0].joints.Set(kBodyHip, JointReference{"Root", -1});
   manifest.recordings[0].joints.Set(kLeftKnee, JointReference{"LKneeJC", -1});
-  manifest.recordings[0].length_scale = 0.0564;
+  manifest.recordings[0].length.length_scale = 0.0564;
   manifest.recordings[1].joints = {};
   manifest.recordings[1].up = "z";
   manifest.recordings[1].forward = "x";
-  manifest.recordings[1].length_unit.reset();
+  manifest.recordings[1].length.length_unit.reset();
   manifest.recordings[1].pushes[0].start_frame = 13;
   manifest.recordings[1].frames.reset();
   ASSERT_FALSE(WriteManifest(Path("manifest.json"), manifest));
@@ -157,7 +157,7 @@ TEST_F(ManifestTest, ChangesAreWritten) {
   EXPECT_EQ(json["recordings"][0]["joints"]["left_knee"], "LKneeJC");
   EXPECT_EQ(again.recordings[0].joints.Of(kLeftKnee)->name, "LKneeJC");
   EXPECT_FALSE(again.recordings[0].joints.Of(kRightKnee));
-  EXPECT_EQ(again.recordings[0].length_scale, 0.0564);
+  EXPECT_EQ(again.recordings[0].length.length_scale, 0.0564);
   EXPECT_FALSE(again.recordings[1].joints.Of(kBodyHip));
   EXPECT_EQ(again.recordings[1].up, "z");
   EXPECT_EQ(again.recordings[1].pushes[0].start_frame, 13);
@@ -166,7 +166,7 @@ TEST_F(ManifestTest, ChangesAreWritten) {
 
 TEST_F(ManifestTest, WrittenFromScratch) {
   Manifest manifest;
-  manifest.length_unit = LengthUnit::kMetre;
+  manifest.length.length_unit = LengthUnit::kMetre;
   ManifestRecording recording;
   recording.id = "x";
   recording.labels.Set(kSettingLabel, "single");
@@ -178,7 +178,7 @@ TEST_F(ManifestTest, WrittenFromScratch) {
   manifest.recordings.push_back(recording);
   ASSERT_FALSE(WriteManifest(Path("manifest.json"), manifest));
   const Manifest read = Unwrapped(ReadManifest(Path("manifest.json")));
-  EXPECT_EQ(read.length_unit, LengthUnit::kMetre);
+  EXPECT_EQ(read.length.length_unit, LengthUnit::kMetre);
   EXPECT_EQ(read.recordings[0].fps, 120.5);
   EXPECT_EQ(read.recordings[0].pushes[0].csv, "x.csv");
 }

@@ -9,12 +9,12 @@ namespace pushid {
 namespace {
 
 BodyRoles RolesOf(const BvhSkeleton& skeleton, const JointMapping& mapping = {}) {
-  const auto pendulum = Unwrapped(ChoosePendulumJoints("a.bvh", skeleton, mapping));
+  const auto pendulum = Unwrapped(ChoosePendulum("a.bvh", skeleton.Names(), &skeleton, mapping));
   return Unwrapped(ChooseRoles("a.bvh", skeleton.Names(), &skeleton, pendulum, mapping));
 }
 
 BodyRoles RolesOfPoints(const std::vector<std::string>& names, const JointMapping& mapping = {}) {
-  const auto pendulum = Unwrapped(ChoosePendulumPoints("a.c3d", names, mapping));
+  const auto pendulum = Unwrapped(ChoosePendulum("a.c3d", names, nullptr, mapping));
   return Unwrapped(ChooseRoles("a.c3d", names, nullptr, pendulum, mapping));
 }
 
@@ -69,7 +69,7 @@ TEST(RoleChoiceTest, AnkleWithoutTheSkeletonsPrefix) {
   JointMapping mapping;
   mapping.Set(kLeftAnkle, {"my_LeftFoot"});
   mapping.Set(kRightAnkle, {"my_RightFoot"});
-  const auto pendulum = Unwrapped(ChoosePendulumJoints("a.bvh", skeleton, mapping));
+  const auto pendulum = Unwrapped(ChoosePendulum("a.bvh", skeleton.Names(), &skeleton, mapping));
   const auto roles = ChooseRoles("a.bvh", skeleton.Names(), &skeleton, pendulum, mapping);
   ASSERT_TRUE(roles.ok());
   EXPECT_TRUE(UnfilledRoles(roles.value()).empty()) << RolesText(roles);
@@ -109,9 +109,9 @@ TEST(RoleChoiceTest, WhatTheManifestNamesWins) {
   EXPECT_EQ(roles.joints[kUpperSpine], (std::vector<int>{2, 3}));
   mapping.Set(kLeftKnee, {"knee"});
   const BvhSkeleton skeleton = BvhOf(joints);
+  const auto pendulum = ChoosePendulum("a.bvh", skeleton.Names(), &skeleton, {}).value();
   EXPECT_TRUE(
-      Contains(ProblemOf(ChooseRoles("a.bvh", skeleton.Names(), &skeleton,
-                                     ChoosePendulumJoints("a.bvh", skeleton, {}).value(), mapping)),
+      Contains(ProblemOf(ChooseRoles("a.bvh", skeleton.Names(), &skeleton, pendulum, mapping)),
                "joints: left_knee: there is no joint 'knee'"));
 }
 

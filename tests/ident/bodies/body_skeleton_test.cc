@@ -33,7 +33,7 @@ class BodySkeletonTest : public RecordingFolderTest {
     entry().push_csv = "";
     entry().up = "y";
     entry().forward = "z";
-    entry().length_scale = kScale;
+    entry().length.length_scale = kScale;
     LoadOptions options;
     options.keep_all_joints = true;
     const auto loaded = Unwrapped(Load(options));
@@ -220,7 +220,7 @@ TEST_F(BodySkeletonTest, HingesGetTheAxesThatTheyLack) {
   WritePush("a.csv", 3);
   entry().up = "y";
   entry().forward = "z";
-  entry().length_scale = kScale;
+  entry().length.length_scale = kScale;
   LoadOptions options;
   options.keep_all_joints = true;
   const auto loaded = Unwrapped(Load(options));

@@ -7,6 +7,7 @@
 
 #include "ident/bodies/body_recording.h"
 #include "models/restoration/body.h"
+#include "tests/datasets/raw_bvh.h"
 #include "tests/models/body_samples.h"
 #include "tests/test_support.h"
 
@@ -179,7 +180,7 @@ TEST_F(BodyFilesTest, BvhHoldsTheMotion) {
   scene.bodies = {motion};
   const auto files = Unwrapped(WriteBodyBvh(Path("m.bvh"), scene));
   EXPECT_EQ(files, std::vector<std::string>{Path("m.bvh")});
-  const auto read = Unwrapped(ReadBvhPositions(Path("m.bvh")));
+  const auto read = BvhInMetres(Path("m.bvh"));
   ASSERT_EQ(read.num_frames(), 12);
   for (int t = 0; t < 12; ++t) {
     const Pose carried = FitSkeleton(motion[0], motion[t]).positions;

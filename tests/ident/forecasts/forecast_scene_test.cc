@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "tests/datasets/raw_bvh.h"
 #include "tests/models/generators/generator_samples.h"
 #include "tests/test_support.h"
 
@@ -32,10 +33,10 @@ TEST_F(ForecastSceneTest, ABvhHoldsThePositionsExactly) {
   EXPECT_TRUE(Contains(files[2], "m_future_2.bvh"));
   ASSERT_TRUE(WritePoses(Path("m.BVH"), scene).ok());
   EXPECT_EQ(ReadText(Path("m.BVH")).substr(0, 9), "HIERARCHY") << "whatever the case";
-  const auto read = Unwrapped(ReadBvhPositions(Path("m.bvh")));
+  const auto read = BvhInMetres(Path("m.bvh"));
   ASSERT_EQ(read.num_frames(), 18);
   for (int i = 0; i < 4; ++i) {
-    const int joint = read.skeleton.Find(scene.layout.names[i]);
+    const int joint = read.skeleton->Find(scene.layout.names[i]);
     ASSERT_GE(joint, 0);
     for (int t : {0, 11, 17}) {
       const Eigen::Vector3f expected = t < 12 ? scene.observed.col(t).segment<3>(3 * i)
