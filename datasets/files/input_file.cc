@@ -172,6 +172,13 @@ bool LineReader::NextNonBlank(std::string_view* line) {
   return false;
 }
 
+bool LineReader::NextRow(std::string_view* line) {
+  while (NextNonBlank(line)) {
+    if (Trimmed(*line).front() != '#') return true;
+  }
+  return false;
+}
+
 // Bytes; a manifest of a million recordings is smaller. /dev/zero would never end.
 constexpr std::size_t kLargestText = std::size_t{1} << 30;
 

@@ -74,6 +74,8 @@ class LineReader {
   bool Next(std::string_view* line);
   // Like Next, but skips blank lines.
   bool NextNonBlank(std::string_view* line);
+  // Like Next, but skips blank lines and comments, which start with #.
+  bool NextRow(std::string_view* line);
 
   int line_number() const { return line_number_; }             // of the line last returned, 1-based
   bool ended_in_newline() const { return ended_in_newline_; }  // false: it is the file's last

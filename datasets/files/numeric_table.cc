@@ -76,10 +76,7 @@ class TableReader {
   }
 
   bool NextRow(std::string_view* line) {
-    while (reader_.NextNonBlank(line)) {
-      if (format_ != TableFormat::kCsv || Trimmed(*line).front() != '#') return true;
-    }
-    return false;
+    return format_ == TableFormat::kCsv ? reader_.NextRow(line) : reader_.NextNonBlank(line);
   }
 
   void ReadHead() {
@@ -191,11 +188,6 @@ class TableReader {
 
 }  // namespace
 
-const std::vector<double>* NumericTable::Column(int index) const {
-  const auto found = std::find(chosen.begin(), chosen.end(), index);
-  return found == chosen.end() ? nullptr : &data[found - chosen.begin()];
-}
-
 Result<NumericTable> ReadNumericTable(const std::string& path, TableFormat format,
                                       const Choice& choose) {
   return Caught([&] { return TableReader(path, format, choose).Read(); });
@@ -227,16 +219,17 @@ double UpperMedian(std::vector<double> values) {
 }
 
 Result<double> EvenTimeStep(const NumericTable& table, int time_column) {
-  const std::vector<double>* time = table.Column(time_column);
+  const auto chosen = std::find(table.chosen.begin(), table.chosen.end(), time_column);
   const int rows = table.num_rows();
-  if (time == nullptr || rows < 2) return Error{"there are fewer than two times", table.path};
-  const double step = ((*time)[rows - 1] - (*time)[0]) / (rows - 1);
+  if (rows < 2) return Error{"there are fewer than two times", table.path};
+  const std::vector<double>& time = table.data[chosen - table.chosen.begin()];
+  const double step = (time[rows - 1] - time[0]) / (rows - 1);
   // The second part is what three decimals leave of a time.
   const double slack = kEvenness * step + std::fmin(1.1e-3, 0.3 * step);
   std::vector<double> steps;
   bool even = true;
   for (int i = 1; i < rows; ++i) {
-    const double now = (*time)[i] - (*time)[i - 1];
+    const double now = time[i] - time[i - 1];
     if (!std::isfinite(now)) return Error{"a time is missing", table.path, table.lines[i]};
     steps.push_back(now);
     even = even && now > 0.0 && std::fabs(now - step) <= slack;
@@ -249,8 +242,8 @@ Result<double> EvenTimeStep(const NumericTable& table, int time_column) {
     return std::fabs(a - usual) < std::fabs(b - usual);
   });
   const int row = 1 + static_cast<int>(at - steps.begin());
-  return Error{*at <= 0.0 ? "the times do not ascend: " + Rounded((*time)[row], 9) +
-                                " s comes after " + Rounded((*time)[row - 1], 9) + " s"
+  return Error{*at <= 0.0 ? "the times do not ascend: " + Rounded(time[row], 9) +
+                                " s comes after " + Rounded(time[row - 1], 9) + " s"
                           : "the times do not ascend in even steps: " + Rounded(*at) + " s where " +
                                 Rounded(usual) + " s is usual; resample the file",
                table.path, table.lines[row]};

@@ -34,8 +34,6 @@ struct NumericTable {
   std::string content_hash;
 
   int num_rows() const { return data.empty() ? 0 : static_cast<int>(data[0].size()); }
-  // The data of a column by its index in names; null when it was not chosen.
-  const std::vector<double>* Column(int index) const;
 };
 
 // The indices of what is to be kept, chosen from the names of all columns, points or joints; throws
@@ -58,7 +56,8 @@ int FindTimeColumn(const std::vector<std::string>& names, const std::string& wan
 // The value in the middle; of an even number of them, the upper one. values: at least one.
 double UpperMedian(std::vector<double> values);
 
-// Steps of a time column in s, or an Error where it does not ascend in even steps (1 %).
+// Steps of a time column, which was chosen, in s, or an Error where it does not ascend in even
+// steps (1 %).
 Result<double> EvenTimeStep(const NumericTable& table, int time_column);
 
 }  // namespace pushid

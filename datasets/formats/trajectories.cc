@@ -174,9 +174,8 @@ std::vector<std::int64_t> TrajectoryIds(const std::vector<std::string>& names) {
 bool IsCrowdCsv(const std::string& path) {
   const auto named = Caught([&] {
     LineReader reader(path);
-    std::string_view line = "#";
-    while (Trimmed(line).front() == '#' && reader.NextNonBlank(&line)) continue;
-    return NamedColumns(line).has_value();
+    std::string_view line;
+    return reader.NextRow(&line) && NamedColumns(line).has_value();
   });
   return named.ok() && named.value();
 }

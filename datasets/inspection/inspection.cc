@@ -121,7 +121,7 @@ void AddForce(const std::string& name, double rate_hz, std::vector<double> value
                                           Rounded(onset / rate_hz, 3) + " s"
                                     : ""));
   if (found->forces.size() < kMostSignals) {
-    found->forces.push_back({name, "N", rate_hz, std::move(values)});
+    found->forces.push_back({name, rate_hz, std::move(values)});
   }
 }
 

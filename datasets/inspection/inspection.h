@@ -18,9 +18,9 @@
 
 namespace pushid {
 
-// A line of a picture: values at a constant rate.
+// A line of a picture: a force at a constant rate, N.
 struct InspectedSignal {
-  std::string name, unit;
+  std::string name;
   double rate_hz = 0.0;
   std::vector<double> values;
 };
@@ -37,11 +37,11 @@ struct Inspection {
   nlohmann::ordered_json ground = nlohmann::ordered_json::array(), plates = ground;
 
   // Data of the picture; empty where the file has no such thing.
-  double rate_hz = 0.0;                 // of hip
-  std::vector<Eigen::Vector3d> hip;     // m, file's axes, less that of the first frame seen
-  std::vector<InspectedSignal> forces;  // N
-  int onset_frame = -1;                 // the hip's first 2 cm
-  std::optional<PersonSteps> steps;     // forward is where the person faces
+  double rate_hz = 0.0;              // of hip
+  std::vector<Eigen::Vector3d> hip;  // m, file's axes, less that of the first frame seen
+  std::vector<InspectedSignal> forces;
+  int onset_frame = -1;              // the hip's first 2 cm
+  std::optional<PersonSteps> steps;  // forward is where the person faces
 
   void Fact(const std::string& what, const std::string& text) { facts.emplace_back(what, text); }
   void Warn(const std::string& text) { warnings.push_back(text); }

@@ -56,25 +56,22 @@ constexpr int kTranslationNumbers = 3;  // in front of every line's maps
 // Appends the numbers of a line.
 void ReadLine(const LineReader& reader, std::string_view line, int expected,
               std::vector<double>* numbers) {
-  const std::string needed =
-      StrCat("; a line has ", expected,
-             " numbers, separated by commas (3 of translation, then 3 a joint)");
-  std::string_view rest = line;
-  const auto fail = [&](const std::string& problem) {
-    Error error = reader.ErrorHere(problem + needed);
-    error.column = static_cast<int>(rest.data() - line.data()) + 1;
+  const std::vector<std::string_view> cells = CellsOf(line, ',');
+  const auto fail = [&](std::string_view at, const std::string& problem) {
+    Error error = reader.ErrorHere(
+        StrCat(problem, "; a line has ", expected,
+               " numbers, separated by commas (3 of translation, then 3 a joint)"));
+    error.column = static_cast<int>(at.data() - line.data()) + 1;
     throw error;
   };
-  for (int i = 1; i <= expected; ++i) {
-    const size_t comma = rest.find(',');
-    const std::string_view cell = Trimmed(rest.substr(0, comma));
+  const int count = static_cast<int>(cells.size());
+  for (int i = 0; i < std::min(count, expected); ++i) {
     double& value = numbers->emplace_back();
-    if (!ParseDouble(cell, &value)) fail(StrCat("number ", i, ": ", NumberProblem(cell)));
-    const bool more = comma != std::string_view::npos;
-    if (more && i == expected) fail("the line has more numbers than it should");
-    if (!more && i < expected) fail(StrCat("the line ends after ", i, " numbers"));
-    if (more) rest.remove_prefix(comma + 1);
+    if (ParseDouble(cells[i], &value)) continue;
+    fail(cells[i], StrCat("number ", i + 1, ": ", NumberProblem(cells[i])));
   }
+  if (count > expected) fail(cells[expected], "the line has more numbers than it should");
+  if (count < expected) fail(cells.back(), StrCat("the line ends after ", count, " numbers"));
 }
 
 // A clip as the human-motion-prediction literature shares it: a line a frame, a number of
@@ -412,13 +409,6 @@ namespace {
 constexpr char kHead[] = "recording,frame,person,symbol";
 constexpr std::int64_t kMostFrames = 100000000;
 
-bool IsRow(LineReader* reader, std::string_view* line) {
-  while (reader->NextNonBlank(line)) {
-    if (line->front() != '#') return true;
-  }
-  return false;
-}
-
 std::string WhoseText(const std::string& person, const std::string& recording) {
   return Quoted(person) + " of recording " + Quoted(recording);
 }
@@ -457,13 +447,13 @@ Result<StateTable> ReadStates(const std::string& path) {
     LineReader reader(path);
     StateTable table{path, {}};
     std::string_view line;
-    if (!IsRow(&reader, &line)) throw Error{"the file lists no states", path};
+    if (!reader.NextRow(&line)) throw Error{"the file lists no states", path};
     if (Trimmed(line) != kHead) {
       throw reader.ErrorHere("the first line must be " + std::string(kHead) + ", not " +
                              Quoted(line));
     }
     std::set<std::tuple<std::string, std::string, int>> seen;
-    while (IsRow(&reader, &line)) {
+    while (reader.NextRow(&line)) {
       const StateRow& r = table.rows.emplace_back(RowOfCells(reader, line));
       if (seen.emplace(r.recording, r.person, r.frame).second) continue;
       throw reader.ErrorHere(StrCat("the state of ", WhoseText(r.person, r.recording), " at frame ",

@@ -336,12 +336,7 @@ class PersonLoader {
           "has no joints for " + RoleList(filled) +
           ", which are filled from their neighbours; name them by \"joints\" if the file has them");
     }
-    person->joints.assign(person->hip.size(), Track(file_.positions.size()));
-    for (std::size_t joint = 0; joint < file_.positions.size(); ++joint) {
-      for (std::size_t frame = 0; frame < person->hip.size(); ++frame) {
-        person->joints[frame][joint] = file_.positions[joint][frame];
-      }
-    }
+    person->joints = Transposed(file_.positions);
   }
 
   const Manifest& manifest_;

@@ -33,17 +33,9 @@ void ForEachTrack(RecordedPerson* person, const Change& change) {
     if (!track.empty()) change(&track);
   }
   if (person->joints.empty()) return;
-  std::vector<Track> tracks(person->joints[0].size());
-  for (std::size_t joint = 0; joint < tracks.size(); ++joint) {
-    for (const auto& frame : person->joints) tracks[joint].push_back(frame[joint]);
-    change(&tracks[joint]);
-  }
-  person->joints.assign(tracks[0].size(), Track(tracks.size()));
-  for (std::size_t frame = 0; frame < person->joints.size(); ++frame) {
-    for (std::size_t joint = 0; joint < tracks.size(); ++joint) {
-      person->joints[frame][joint] = tracks[joint][frame];
-    }
-  }
+  std::vector<Track> tracks = Transposed(person->joints);
+  for (Track& track : tracks) change(&track);
+  person->joints = Transposed(tracks);
 }
 
 constexpr double kShortestRod = 0.12, kLongestRod = 3.0;  // m; a small humanoid robot has 0.3
@@ -217,8 +209,10 @@ GapCount FillGaps(int max_gap, std::vector<Vector3d>* track, std::vector<double>
     const bool inside = begin > 0 && end < frames;
     const bool fill = inside && length <= max_gap;
     ++count.gaps;
-    (fill ? count.filled_frames : count.excluded_frames) += length;
-    if (!fill) std::fill(weight->begin() + begin, weight->begin() + end, 0.0);
+    if (!fill) {
+      count.excluded_frames += length;
+      std::fill(weight->begin() + begin, weight->begin() + end, 0.0);
+    }
     if (inside) {
       FillInside(begin - 1, end, fill, track);
     } else if (length < frames) {
@@ -520,6 +514,14 @@ std::vector<Eigen::Vector3d> MeanTrack(const std::vector<std::vector<Eigen::Vect
     mean[frame] /= static_cast<double>(chosen.size());
   }
   return mean;
+}
+
+std::vector<Track> Transposed(const std::vector<Track>& rows) {
+  std::vector<Track> columns(rows[0].size());
+  for (const Track& row : rows) {
+    for (std::size_t i = 0; i < columns.size(); ++i) columns[i].push_back(row[i]);
+  }
+  return columns;
 }
 
 Eigen::Vector3d ValueBetween(const std::vector<Eigen::Vector3d>& track, double at) {

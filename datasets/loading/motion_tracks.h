@@ -41,8 +41,8 @@ MaybeError CheckMotion(const RecordedPerson& person, double metres_per_unit);
 
 struct GapCount {
   int gaps = 0;
-  int filled_frames = 0;    // in gaps that are short enough
-  int excluded_frames = 0;  // in longer ones, and before the first and after the last frame seen
+  int excluded_frames =
+      0;  // in gaps that are too long, and before the first and after the last frame seen
 };
 
 // Fills every gap (positions that are not finite) of `track`: gaps of up to max_gap frames inside
@@ -137,6 +137,10 @@ std::vector<Eigen::Vector4d> PushAtHeight(const RecordedPerson& person, int star
 // there is no such track.
 std::vector<Eigen::Vector3d> MeanTrack(const std::vector<std::vector<Eigen::Vector3d>>& tracks,
                                        const std::vector<int>& chosen);
+
+// [joint][frame] as [frame][joint], and the other way.
+std::vector<std::vector<Eigen::Vector3d>> Transposed(
+    const std::vector<std::vector<Eigen::Vector3d>>& rows);
 
 // Values at even times: cubic through the four nearest samples (Lagrange; of fewer, through all).
 // at: in samples, from 0.

@@ -384,7 +384,7 @@ Result<Manifest> ReadManifest(const std::string& path) {
     if (manifest.length.length_scale && of_units && !top.failed()) {
       top.Fail("length_scale", "is given together with units.bvh_length; give one of them");
     }
-    manifest.stated_errors = ReadStatedErrors(&top, {});
+    const StatedErrors stated = ReadStatedErrors(&top, {});
     OrThrow(top.error());
 
     const std::vector<int> lines = document.ElementLines("/recordings");
@@ -392,8 +392,7 @@ Result<Manifest> ReadManifest(const std::string& path) {
     for (std::size_t i = 0; i < recordings.size(); ++i) {
       const std::string place = StrCat("/recordings/", i);
       JsonFields fields(document, recordings[i], place, StrCat("recording ", i));
-      ManifestRecording recording =
-          ReadRecording(document, recordings[i], manifest.stated_errors, &fields);
+      ManifestRecording recording = ReadRecording(document, recordings[i], stated, &fields);
       top.Add(fields);
       if (top.is_wrong()) throw *top.error();
       recording.manifest = path;

@@ -101,7 +101,6 @@ ManifestRecording EntryOf(const Recording& recording);
 struct Manifest {
   std::string path;      // the file (or files) it was read from, for messages
   GivenLength length{};  // of recordings that do not give their own
-  StatedErrors stated_errors;
   std::vector<ManifestRecording> recordings;
   KeptJson json;  // the top level, without `recordings`
 };
