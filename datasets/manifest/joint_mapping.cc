@@ -574,8 +574,9 @@ GivenLength ReadLength(JsonFields* fields) {
   if (fields->failed()) return given;
   const std::string problem = LengthScaleProblem(metres);
   if (!problem.empty()) fields->Fail(kScale, problem);
-  if (given.length_unit)
+  if (given.length_unit) {
     fields->Fail(kScale, "is given together with length_unit; give one of them");
+  }
   given.length_scale = metres;
   return given;
 }
