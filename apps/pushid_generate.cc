@@ -70,8 +70,8 @@ DEFINE_int32(
     "action; -1: none");
 DEFINE_string(json_out, "", "write the errors here (JSON)");
 DEFINE_string(poses_out, "",
-              "write observed, recorded and forecast poses here (.csv), or observed "
-              "and forecast ones (.bvh)");
+              "particles: write observed, recorded and forecast poses here (CSV); diffusion: write "
+              "the forecast bodies here (.csv or .bvh)");
 DEFINE_string(html_out, "", "a page with the forecast over the recorded motion (HTML)");
 DEFINE_int32(steps, kOptions.changes.diffusion.steps, "diffusion: number of sampling steps");
 DEFINE_double(blend, kOptions.changes.diffusion.blend,
@@ -123,7 +123,6 @@ void CheckNumbers() {
   CheckRange("target_window", FLAGS_target_window, -1, 1e9);
   CheckRange("observed", FLAGS_observed, 0, 1000);
   CheckRange("frames", FLAGS_frames, 0, 10000);
-  OrFail(CheckPosesPath("--poses_out", FLAGS_poses_out));
   if (FLAGS_target_window >= 0 && FLAGS_samples == 0) {
     throw Error{"--target_window needs --samples, among which it looks"};
   }
@@ -140,6 +139,11 @@ void CheckKindFlags(const GenerateOptions& options, GeneratorKind kind) {
   }
   if (PublishedKind().value_or(kind) != kind) foreign.push_back("published");
   RefuseGiven(foreign, " has no effect on a generator of " + NameOf(kind), FLAGS_model);
+  const std::string& poses = FLAGS_poses_out;
+  const bool is_csv = std::filesystem::path(poses).extension() == ".csv";
+  if (!poses.empty() && !is_csv && !(groups && IsBodyFile(poses))) {
+    throw Error{"--poses_out is '" + poses + "'; it must end in .csv" + (groups ? " or .bvh" : "")};
+  }
   if (!groups) return Require("folder", FLAGS_folder, "name the folder of the clips");
   if (Shows()) Require("id", FLAGS_id, "name the recording to show");
   if (options.changes.diffusion.blend > 0.0 && FLAGS_physics.empty()) {
@@ -255,7 +259,10 @@ void Show(std::vector<std::string> files, const Animation& page) {
 
 void ShowWindow(const ForecastScene& scene) {
   std::vector<std::string> files;
-  if (!FLAGS_poses_out.empty()) files = OrFail(WritePoses(FLAGS_poses_out, scene));
+  if (!FLAGS_poses_out.empty()) {
+    OrFail(WriteForecastCsv(FLAGS_poses_out, scene));
+    files = {FLAGS_poses_out};
+  }
   Show(files, ToAnimation(scene));
 }
 
