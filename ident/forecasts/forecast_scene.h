@@ -1,4 +1,4 @@
-// ident: one forecast to look at: what was recorded, the forecast, and sampled futures as a fan.
+// ident: one forecast for display: recorded motion, the forecast, and sampled futures.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct ForecastScene {
   double dt = 0.04;  // s
   ParticleLayout layout;
   Trajectories observed;
-  Trajectories recorded;  // what came after; empty where it is not known
+  Trajectories recorded;  // the true future; empty if unknown
   Trajectories forecast;
   std::vector<SampledFuture> futures;
 
