@@ -39,9 +39,8 @@ namespace pushid {
 //
 //   block(x)  = SiLU(conv3(FiLM(SiLU(conv3(x))))) + conv1(x)
 //   FiLM(y)   = y (1 + g) + b, [g, b] linear in SiLU(MLP(sines of t) + MLP(the person's statics))
-//   pooled(y) = [y, sums over the others of a y_other]: each level's output on the way down, as
-//   input
-//               of the middle and of the way up; people see nothing else of each other
+//   pooled(y) = [y, sums over the others of a y_other], y: each level's output on the way down, as
+//               input of the middle and of the way up; people see nothing else of each other
 //
 // Convolutions over time are causal (frames t-2, t-1, t), and so is the doubling of frames, so that
 // later frames never change earlier ones and a motion may be longer than those of the training.
@@ -57,9 +56,8 @@ namespace pushid {
 //   given     the observed motion (0 where nothing is observed), 1 in observed frames, and the push
 //             on the group over 10 N/kg
 //   statics   per person: joints relative to the hip at frame 0 (a spread of 1/2), place relative
-//   to
-//             the pushed person, height of the hip above 1 m, mass / 80 kg - 1, whether pushed, the
-//             push's impulse per mass, its duration
+//             to the pushed person, height of the hip above 1 m, mass / 80 kg - 1, whether pushed,
+//             the push's impulse per mass, its duration
 //
 // Columns of motion and given: the frames of the first person, then those of the next.
 
@@ -121,9 +119,8 @@ struct GroupChange {
 std::vector<ObservedMotion> Changed(const std::vector<ObservedMotion>& group,
                                     const GroupChange& change);
 
-// local      exp(-(d / 0.8 m)^2), separately for people ahead and behind (a logistic of dx / 0.1
-// m),
-//            each over its sum + 0.1; d, dx: between the places at frame 0
+// local      exp(-(d / 0.8 m)^2), separately for people ahead and behind (a logistic of
+//            dx / 0.1 m), each over its sum + 0.1; d, dx: between the places at frame 0
 // none       people do not see each other
 // mean_all   the mean over everybody, oneself included (SDM)
 // heads      attention of four heads with values of their own, oneself included (SDM)

@@ -56,8 +56,7 @@ Tensor Mapped(const Tensor& x, const RowMapPointer& map) { return MappedRows::ap
 
 // The row maps of a level. Level l has every 2^l-th frame.
 struct LevelMaps {
-  RowMapPointer
-      taps;  // the three input frames of a convolution with stride 2, from the level above
+  RowMapPointer taps;               // input frames of a convolution with stride 2, level above
   RowMapPointer tapped;             // sums of the three products of a convolution with stride 1
   RowMapPointer doubled;            // from the level below, frames doubled
   RowMapPointer people;             // from one row per person

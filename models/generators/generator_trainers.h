@@ -100,9 +100,8 @@ class SimlpeTrainer : public TrainerOf<SimlpeNetwork> {
 
 // Training of the diffusion network.
 //
-// A step draws some groups, mirrors some of them, turns and scales each a little, shows none or
-// some of the first frames, adds noise of a random time t, and takes the loss of the estimate of
-// x_0:
+// A step draws groups, mirrors some of them, turns and scales each a little, shows none or some of
+// the first frames, adds noise of a random time t, and takes the loss of the estimate of x_0:
 //
 //   mean of |x - x_0| + 2 |joint - joint_0| (m) + 2 |change of joint - change of joint_0| (m)
 //

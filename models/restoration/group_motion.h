@@ -104,12 +104,14 @@ class MotionWords {
 //
 // x: a constant 1 and these features, averaged over +-0.25 s and scaled to zero mean and unit
 // variance:
-//   speed of the wrists relative to the hip, their sum and the faster one; height of the higher
-//   wrist above the hip; least distance of a wrist to another person's upper spine speed of the
-//   faster ankle; speed of the hip; lean of the hip over the ankles; turning rate of the shoulders;
-//   their angle to the pelvis cosine between the others' headings and the direction from them to
-//   the person: mean and least wrist speed of the others: mean and largest; cosine between the
-//   person's heading and the directions to the others, weighted by that speed
+//   - speed of the wrists relative to the hip, their sum and the faster one; height of the higher
+//     wrist above the hip; least distance of a wrist to another person's upper spine;
+//   - speed of the faster ankle; speed of the hip; lean of the hip over the ankles; turning rate of
+//     the shoulders; their angle to the pelvis;
+//   - cosine between the others' headings and the direction from them to the person: mean and
+//     least;
+//   - wrist speed of the others: mean and largest; cosine between the person's heading and the
+//     directions to the others, weighted by that speed.
 // The order of the others does not matter. A person alone has zeros in the features of others.
 
 inline constexpr int kStateFeatures = 14;

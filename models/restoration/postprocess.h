@@ -1,8 +1,7 @@
 // models: post-processing, which fits a restored motion to the person and the floor.
 //
 //   1. The residual at frame 0 (restored pose - first pose) is subtracted and fades over 8 frames,
-//   so
-//      that the motion begins with the first pose. If several frames were observed, they replace
+//      so that the motion begins with the first pose. If several frames were observed, they replace
 //      the restored ones, and the residual is that of the last of them.
 //   2. The pose is transferred to the person's own skeleton (FitSkeleton of body.h), so that bones
 //      keep their length.

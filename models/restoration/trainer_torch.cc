@@ -61,8 +61,8 @@ struct RegressionTraining : TrainerOf<DenseNetwork> {
     held_weights = ToTensor(held.weights);
     const int in = static_cast<int>(inputs.size(1)), out = static_cast<int>(targets.size(1));
     network = std::make_shared<DenseModule>(in, out, options);
-    best = std::make_shared<DenseModule>(in, out,
-                                         options);  // its draws are part of the seed's sequence
+    // The draws of `best` are part of the seed's sequence.
+    best = std::make_shared<DenseModule>(in, out, options);
     CopyWeights(*network, best.get());
     optimizer = MakeOptimizer(network->parameters(), options.learning_rate, options.weight_decay);
   }

@@ -66,10 +66,10 @@ BodyMotion MotionFromOutputs(const RestorationInput& person, const Eigen::Matrix
 //
 // In each of four quarters (ahead, behind, left, right, between the diagonals of the heading at
 // frame 0), the nearest person within 2 m at frame 0, hip to hip:
-//   at frame 0: hip relative to one's own (x, y), m; rod length, m; nearness, exp(-(d/m)^2) 4 per
-//   lag of 0, +-6, +-12, 24 frames (at 60 Hz; by time at other rates): hip relative to one's
-//     own, minus the same at frame 0 (x, y), m; nearness 18
-//   now: velocity of the hip relative to one's own (x, y), m/s; theta and phi, rad 4
+//   4 at frame 0: hip relative to one's own (x, y), m; rod length, m; nearness, exp(-(d/m)^2)
+//   18 for lags of 0, +-6, +-12, 24 frames (at 60 Hz; by time at other rates): hip relative to
+//     one's own, minus the same at frame 0 (x, y), m; nearness
+//   4 now: velocity of the hip relative to one's own (x, y), m/s; theta and phi, rad
 // Zeros in empty quarters. Hips are the tips of the rods. Mirroring exchanges left and right, and
 // the order of people does not matter: of two equally near people, the one further left counts, or
 // else the one further ahead.
