@@ -218,7 +218,8 @@ constexpr double kAfterPush = 0.4;  // s of motion behind the push's end that ta
 constexpr int kFewestFrames = 12;
 constexpr int kRefinements = 20;
 
-// One sensor's force along the direction, integrated once and twice: exact for the broken line.
+// The first and second integral of a sensor's force along the direction, exact for linear
+// interpolation.
 class Integrals {
  public:
   Integrals(const TimedRecord& force, const Eigen::Vector2d& direction)
