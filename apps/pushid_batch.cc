@@ -1,4 +1,4 @@
-// apps: pushid-batch: many fits from one plan, each in a process of its own.
+// apps: pushid-batch: the fits of a plan, each in its own process.
 #include <map>
 
 #include "apps/batch/batch.h"
@@ -26,7 +26,7 @@ namespace {
 
 using namespace pushid;
 
-// The last line on stderr of a command that fails, without the program's name; empty when it
+// The last line on stderr of a command that fails, without the program's name; empty if it
 // succeeds.
 std::string ComplaintOf(const std::vector<std::string>& command) {
   std::FILE* pipe = popen((ShellText(command) + " 2>&1 >/dev/null").c_str(), "r");
@@ -44,9 +44,9 @@ std::string ComplaintOf(const std::vector<std::string>& command) {
   return last;
 }
 
-// Checks the flags of these jobs' variants by the programs themselves before any job starts: a
-// misspelt flag would fail in every job, one after the other. Errors: what the program says, with
-// the plan's line; there is no program that trains.
+// Checks the flags of the jobs' variants with the programs' --check before any job starts, because
+// a misspelt flag would fail in every job. Errors: the program's message with the plan's line; a
+// missing training program.
 void CheckVariants(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
                    const std::string& bin) {
   using Flags = std::vector<std::string>;
@@ -71,7 +71,7 @@ void CheckVariants(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
       throw wrong("a restoration needs " + trainer + ", which is only built with LibTorch",
                   variant.restoration_line);
     }
-    // Each job names its model and its output.
+    // Placeholders: each job has its own --model and --out.
     check({trainer, "--check", "--model=model.json", "--out=restoration"}, *variant.restoration,
           variant.restoration_line);
   }
@@ -100,7 +100,7 @@ int PrintCommands(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
   return kDone;
 }
 
-// Writes and prints the summary of all jobs of the plan, whichever of them ran now.
+// Writes and prints the summary of all jobs of the plan.
 std::vector<JobResult> ShowSummary(const BatchPlan& plan, const std::vector<BatchJob>& all) {
   std::vector<JobResult> rows = ReadResults(plan, all);
   WriteSummary(plan, rows);
@@ -173,7 +173,7 @@ int Run() {
 
 int main(int argc, char** argv) {
   return RunApp(argc, argv,
-                "pushid-batch runs the fits of a plan and gathers them in one table.\n"
+                "pushid-batch runs the fits of a plan and collects their results in one table.\n"
                 "  pushid-batch --plan=plan.toml --jobs=2",
                 Run);
 }

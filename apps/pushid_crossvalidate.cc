@@ -79,8 +79,8 @@ Candidates CandidatesOf(const Setups& setups,
 
 using Predictors = std::vector<Predictor>;
 
-// After observed frames the restarted model takes the place of ridge regression and template, which
-// could not use them.
+// With observed frames, the restarted model replaces ridge regression and template, which cannot
+// use them.
 void AddBaselines(const FitOptions& options, Predictors* predictors) {
   const int observed = ObservedFrames();
   if (observed > 0) {

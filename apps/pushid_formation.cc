@@ -329,7 +329,7 @@ void PrintPeople(const FormationRun& run, bool named) {
   }
 }
 
-// With more people the draws behind an interval take longer than the simulation should.
+// With more people, the draws for the intervals take too long.
 constexpr int kMostPeopleForBands = 60;
 
 std::string SpeedText(const WaveSpeed& wave, const WaveBands& bands) {

@@ -1,5 +1,5 @@
-// apps: pushid-generate: motion continued by a learned generator, judged and shown: windows of
-// motion capture, and recorded groups.
+// apps: pushid-generate: forecasts by a learned generator, scored and displayed: windows of motion
+// capture clips, and recorded groups.
 #include <set>
 
 #include "apps/flags/command_line.h"
@@ -25,10 +25,10 @@ namespace {
 
 using namespace pushid;
 
-// Values that follow from several flags.
+// Options that depend on several flags.
 struct GenerateOptions {
   GeneratorChanges changes;
-  int scored_samples = 1;  // of every group, each scored by itself
+  int scored_samples = 1;  // of every group, each scored separately
   ForecastProtocol protocol = ForecastProtocol::kValidation;
 };
 
@@ -57,21 +57,22 @@ DEFINE_int32(
     frames, 0,
     "diffusion: length of the shown forecast, frames, also past the recording's end; 0: as "
     "long as the recording");
-DEFINE_string(states, "",
-              "diffusion: CSV of the states of people that somebody annotated "
-              "(recording,frame,person,symbol), for SSCP and transitions; empty: built-in states");
+DEFINE_string(
+    states, "",
+    "diffusion: CSV of annotated states of people (recording,frame,person,symbol), for SSCP "
+    "and transitions; empty: built-in states");
 DEFINE_string(csv_out, "", "diffusion: write the states of the recordings here (CSV)");
 DEFINE_string(action, "", "particles: action of the window to show; empty: the first");
 DEFINE_int32(window, 0, "particles: which of the action's windows to show, from 0 on");
 DEFINE_string(id, "", "diffusion: the recording to show");
 DEFINE_int32(
     target_window, -1,
-    "particles, --samples: show the most probable of them that ends like this window of the "
+    "particles, --samples: show the most probable sampled future that ends like this window of the "
     "action; -1: none");
 DEFINE_string(json_out, "", "write the errors here (JSON)");
 DEFINE_string(poses_out, "",
-              "write observed, recorded and forecast poses here (.csv), or observed "
-              "and forecast ones (.bvh)");
+              "particles: write observed, recorded and forecast poses here (CSV); diffusion: write "
+              "the forecast bodies here (.csv or .bvh)");
 DEFINE_string(html_out, "", "a page with the forecast over the recorded motion (HTML)");
 DEFINE_int32(steps, kOptions.changes.diffusion.steps, "diffusion: number of sampling steps");
 DEFINE_double(blend, kOptions.changes.diffusion.blend,
@@ -101,7 +102,7 @@ void ReadChanges(GeneratorChanges* changes) {
   }
 }
 
-// The forecast of a network by itself, on the windows of the tables; samples as in the paper.
+// The settings of --published: a network alone, on the paper's windows, with the paper's sampling.
 void SetPublished(GenerateOptions* options) {
   const std::optional<GeneratorKind> published = PublishedKind();
   if (published == GeneratorKind::kParticles) {
@@ -123,13 +124,12 @@ void CheckNumbers() {
   CheckRange("target_window", FLAGS_target_window, -1, 1e9);
   CheckRange("observed", FLAGS_observed, 0, 1000);
   CheckRange("frames", FLAGS_frames, 0, 10000);
-  OrFail(CheckPosesPath("--poses_out", FLAGS_poses_out));
   if (FLAGS_target_window >= 0 && FLAGS_samples == 0) {
-    throw Error{"--target_window needs --samples, among which it looks"};
+    throw Error{"--target_window needs --samples, from which it selects"};
   }
 }
 
-// Errors: flags that say something to generators of the other kind alone, or that this kind needs.
+// Throws if a flag has no effect on this kind, or one that it needs is missing.
 void CheckKindFlags(const GenerateOptions& options, GeneratorKind kind) {
   const bool groups = RowOf(kind).groups;
   std::vector<std::string> foreign = {"folder",        "action",  "window", "protocol",
@@ -140,6 +140,11 @@ void CheckKindFlags(const GenerateOptions& options, GeneratorKind kind) {
   }
   if (PublishedKind().value_or(kind) != kind) foreign.push_back("published");
   RefuseGiven(foreign, " has no effect on a generator of " + NameOf(kind), FLAGS_model);
+  const std::string& poses = FLAGS_poses_out;
+  const bool is_csv = std::filesystem::path(poses).extension() == ".csv";
+  if (!poses.empty() && !is_csv && !(groups && IsBodyFile(poses))) {
+    throw Error{"--poses_out is '" + poses + "'; it must end in .csv" + (groups ? " or .bvh" : "")};
+  }
   if (!groups) return Require("folder", FLAGS_folder, "name the folder of the clips");
   if (Shows()) Require("id", FLAGS_id, "name the recording to show");
   if (options.changes.diffusion.blend > 0.0 && FLAGS_physics.empty()) {
@@ -160,11 +165,10 @@ GenerateOptions OptionsFromCommandLine() {
   return options;
 }
 
-// Windows of clips forecast, sampled and shown, and paths to a pose.
+// Windows of clips.
 
-// Windows are forecast together, in batches that fit the memory.
-constexpr size_t kTogether = 64;
-constexpr double kTargetDistance = 0.05;  // m; what counts as near the target of a path
+constexpr size_t kTogether = 64;          // windows in one call, limited by memory
+constexpr double kTargetDistance = 0.05;  // m; largest distance of a path's end from its target
 
 std::vector<Trajectories> Forecasts(const MotionGenerator& generator,
                                     const std::vector<ForecastWindow>& windows) {
@@ -197,7 +201,7 @@ std::vector<std::vector<SampledFuture>> Samples(const MotionGenerator& generator
   return all;
 }
 
-// The windows of one action, all of the first where none is named.
+// Index of the window with this number among those of an action (empty: the first action).
 size_t FindWindow(const std::vector<ForecastWindow>& windows, const std::string& action,
                   int number) {
   int found = 0;
@@ -209,7 +213,7 @@ size_t FindWindow(const std::vector<ForecastWindow>& windows, const std::string&
               "; --window and --target_window count from 0"};
 }
 
-// The scene's forecast becomes the most probable path to the target; its outcome goes to `json`.
+// Replaces the scene's forecast by the most probable path to the target, which `json` describes.
 void SearchPath(const Eigen::VectorXf& target, ForecastScene* scene, Json* json) {
   scene->title += ", towards the end of window " + std::to_string(FLAGS_target_window);
   const PathChoice choice =
@@ -224,7 +228,7 @@ void SearchPath(const Eigen::VectorXf& target, ForecastScene* scene, Json* json)
   scene->forecast = scene->futures[choice.future].motion;
 }
 
-// The window's forecast and futures; of a search its outcome goes to `json`.
+// The window's forecast and futures, with SearchPath if --target_window is given.
 ForecastScene SceneOfWindow(const MotionGenerator& generator,
                             const std::vector<ForecastWindow>& windows, Json* json) {
   const size_t at = FindWindow(windows, FLAGS_action, FLAGS_window);
@@ -244,7 +248,7 @@ ForecastScene SceneOfWindow(const MotionGenerator& generator,
   return scene;
 }
 
-// Writes --html_out, and prints its name after those of the files.
+// Writes --html_out, and prints the names of all files.
 void Show(std::vector<std::string> files, const Animation& page) {
   if (!FLAGS_html_out.empty()) {
     OrFail(WriteFileAtomically(FLAGS_html_out, AnimationHtml({page})));
@@ -255,7 +259,10 @@ void Show(std::vector<std::string> files, const Animation& page) {
 
 void ShowWindow(const ForecastScene& scene) {
   std::vector<std::string> files;
-  if (!FLAGS_poses_out.empty()) files = OrFail(WritePoses(FLAGS_poses_out, scene));
+  if (!FLAGS_poses_out.empty()) {
+    OrFail(WriteForecastCsv(FLAGS_poses_out, scene));
+    files = {FLAGS_poses_out};
+  }
   Show(files, ToAnimation(scene));
 }
 
@@ -294,9 +301,9 @@ int FromClips(const TrainedNetworks& trained, const GenerateOptions& options) {
   return kDone;
 }
 
-// Groups forecast and shown.
+// Groups.
 
-// The model of --physics; nothing where none is named.
+// The model of --physics, if given.
 std::optional<IdentifiedModel> LoadPhysics() {
   if (FLAGS_physics.empty()) return std::nullopt;
   IdentifiedModel model = ModelOf(OrFail(ReadFittedModel(FLAGS_physics)).fit);
@@ -304,7 +311,7 @@ std::optional<IdentifiedModel> LoadPhysics() {
   return model;
 }
 
-// The states of --states, or the built-in ones; writes --csv_out.
+// The states of --states, or the built-in ones. Writes --csv_out.
 SocialCues FlaggedCues(const std::vector<BodyRecording>& recordings) {
   SocialCues cues;
   if (!FLAGS_states.empty()) {
@@ -320,8 +327,8 @@ SocialCues FlaggedCues(const std::vector<BodyRecording>& recordings) {
   return cues;
 }
 
-// Shows everybody recorded, forecast, and beside them the pendulums of the physics; the page has
-// the figures too.
+// Writes the forecast of a recording as files and as a page with the recorded bodies, the pendulums
+// of the physics and the figures.
 void ShowGroup(const GeneratorSettings& settings, const TrainedNetworks& trained,
                const GenerateOptions& options, const BodyRecording& recording,
                const std::optional<IdentifiedModel>& physics,
@@ -351,7 +358,7 @@ void ShowGroup(const GeneratorSettings& settings, const TrainedNetworks& trained
   Show(files, animation);
 }
 
-// Warns once of all recordings whose pushes are of kinds that the generator never saw.
+// Warns once of push kinds that the training did not have.
 void WarnOfPushKinds(const GeneratorSettings& settings,
                      const std::vector<BodyRecording>& recordings) {
   std::set<std::string> told;
@@ -361,7 +368,7 @@ void WarnOfPushKinds(const GeneratorSettings& settings,
   }
 }
 
-// The forecasts of one generator, and of the baselines.
+// Scores of one generator and of the baselines.
 BodyScores ScoreGroups(const GeneratorSettings& settings, const MotionGenerator& generator,
                        const std::vector<BodyRecording>& bodies,
                        const std::optional<IdentifiedModel>& physics, double* seconds) {

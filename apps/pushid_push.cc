@@ -271,7 +271,7 @@ int Run() {
   }
   for (const std::string& warning : FindingTexts(FitFindings(std::move(findings))))
     LOG(WARNING) << warning;
-  // All checks come before the first file is written.
+  // Everything is checked before the first file is written.
   Manifest manifest = OrFail(FlaggedManifest());
   for (ManifestRecording& entry : manifest.recordings) {
     for (const MadePush& push : pushes) {

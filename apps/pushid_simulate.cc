@@ -41,7 +41,7 @@ namespace {
 
 using namespace pushid;
 
-// Everything but the truth: the terms of the model that the flags name, not its parameters.
+// The options of the study without the true parameters.
 SyntheticOptions StudyFromCommandLine() {
   Require("out", FLAGS_out, "name the folder to write");
   OrFail(CheckOutputFolder("out", FLAGS_out));

@@ -13,11 +13,11 @@ namespace {
 
 using namespace pushid;
 
-// Values that follow from several flags.
+// Options that depend on several flags.
 struct TrainGeneratorFlags {
   GeneratorTrainingOptions options;
-  bool hold_out = true;  // validation clips, or a share of the recordings, show how it goes
-  int phases = 2;        // of every clip, whose every second frame is one of the protocol
+  bool hold_out = true;  // compute a held-out loss, on validation clips or a share of recordings
+  int phases = 2;        // 1: only every second frame of a clip, as in the protocol
   GeneratorValidationOptions validation;
 };
 
@@ -31,8 +31,8 @@ DEFINE_string(folder, "",
               "particles: the folder of motion-capture clips, with skeleton.json and train/");
 DEFINE_bool(
     hold_out, kFlags.hold_out,
-    "show how the training goes on the validation clips, or on 15 % of the recordings, which "
-    "are not learned from; off, the default of --published: learn from these too");
+    "hold out the validation clips, or 15 % of the recordings, for the training curve; off, the "
+    "default of --published: train on all of them");
 DEFINE_int32(
     observed, 1,
     "diffusion: number of observed frames in use and in scoring; 1: the first poses and the "
@@ -57,15 +57,16 @@ DEFINE_string(pooling, pushid::NameOf(kOptions.diffusion.structure.pooling),
               "mean_all (the default of --published=sdm) and heads (attention) as in SDM");
 DEFINE_string(
     without, "",
-    "--published=sde: what of it is left out, comma-separated: particles (poses alone go "
-    "in and come out), operator (poses come out), gru (an LSTM instead), noise (and Eq. 6), draw "
-    "(Eq. 6 with its determinant instead), bones (Eq. 11), critic (Eq. 12), protocol (also the "
-    "frames between those of the protocol, but not the last clip of every action)");
+    "--published=sde: parts to leave out, comma-separated: particles (input and output are poses), "
+    "operator (the output is a pose), gru (an LSTM instead), noise (and Eq. 6), draw (Eq. 6 with "
+    "its "
+    "determinant instead), bones (Eq. 11), critic (Eq. 12), protocol (also train on the frames "
+    "between those of the protocol, but not on the last clip of every action)");
 namespace {
 
-// Lyu et al., ACM MM 2021: particles alone, f and g trained together by Eq. 6 as printed, Eq.
-// 10-12, one GRU. The paper does not give the weights of its losses in a form that fits metres;
-// these were chosen here.
+// The settings of Lyu et al., ACM MM 2021: particles alone, f and g trained together by Eq. 6 as
+// printed, Eq. 10-12, one GRU. The weights of the losses were chosen here, because the paper's are
+// not for metres.
 void SetSde(TrainGeneratorFlags* flags) {
   GeneratorTrainingOptions* options = &flags->options;
   flags->phases = 1;
@@ -93,7 +94,7 @@ void SetSde(TrainGeneratorFlags* flags) {
        [&] {
          sde.together = sde.structure.noisy_input = false;
          sde.noise_steps = 0;
-         sde.noise_loss = NoiseLoss::kLikelihood;  // where --noise_steps trains it by itself
+         sde.noise_loss = NoiseLoss::kLikelihood;  // of --noise_steps
        }},
       {"draw", [&] { sde.noise_loss = NoiseLoss::kLikelihood; }},
       {"bones", [&] { sde.bones = 0.0; }},
@@ -109,7 +110,7 @@ void SetSde(TrainGeneratorFlags* flags) {
   }
 }
 
-// Tanke et al., ICCV 2023.
+// The settings of Tanke et al., ICCV 2023.
 void SetSdm(DiffusionTrainingOptions* sdm) {
   sdm->steps = 1500;
   sdm->groups = 8;
@@ -131,7 +132,7 @@ void ReadPublished(TrainGeneratorFlags* flags) {
     throw Error{"--published=" + paper + " needs --kind=" + NameOf(*kind)};
   }
   if (FLAGS_crossvalidate > 0) {
-    throw Error{"--crossvalidate scores forecasts of pushid's own; leave out --published=" + paper};
+    throw Error{"--crossvalidate needs pushid's own settings; leave out --published=" + paper};
   }
   options->kind = *kind;
   options->seeds = 1;
@@ -166,7 +167,7 @@ void ReadNumbers(TrainGeneratorFlags* flags) {
   }
 }
 
-// Flags of another kind would do nothing.
+// Refuses flags that have no effect on this kind.
 void CheckKind(const GeneratorKindRow& kind) {
   if (kind.groups) {
     RefuseGiven({"folder", "noise_steps", "simlpe_steps"},
@@ -230,7 +231,7 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
   return kDone;
 }
 
-constexpr double kHeldOut = 0.15;  // share of the recordings that only show how the training goes
+constexpr double kHeldOut = 0.15;  // share of the recordings for the held-out loss
 
 int FromClips(const TrainGeneratorFlags& flags) {
   const MocapFolder mocap = OrFail(ReadMocapFolder(FLAGS_folder));

@@ -1,4 +1,4 @@
-// apps: pushid-train-restoration: networks that turn pendulums into bodies.
+// apps: pushid-train-restoration: networks that predict bodies from pendulums.
 #include "apps/flags/command_line.h"
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/postprocess_flags.h"
@@ -22,10 +22,11 @@ DEFINE_string(model, "", "model that pushid-fit --model_out wrote: the pendulum 
 DEFINE_string(kind, pushid::NameOf(kOptions.kind), kKind.c_str());
 DEFINE_string(coordinates, pushid::NameOf(kOptions.coordinates),
               "cvae: joints relative to the rod's tip (tip), or to the hip at frame 0 (ldp)");
-DEFINE_string(sees, pushid::NameOf(kOptions.view),
-              "input of the poses: the person's pendulum (pendulum), also those of the neighbours "
-              "(neighbours, window only), or none, for comparison (pose: window uses the first "
-              "pose and the push, cvae the previous pose)");
+DEFINE_string(
+    sees, pushid::NameOf(kOptions.view),
+    "inputs: the person's pendulum (pendulum), also those of the neighbours "
+    "(neighbours, window only), or no pendulum, for comparison (pose: window uses the first "
+    "pose and the push, cvae the previous pose)");
 DEFINE_bool(halves, kOptions.halves,
             "cvae: a network for the lower and one for the upper body (false: one for both)");
 DEFINE_string(
@@ -44,7 +45,7 @@ bool AtDefault(const char* flag) {
          gflags::GetCommandLineFlagInfoOrDie(flag).default_value;
 }
 
-// Throws where flags do not go with the kind.
+// Throws if a flag has no effect on the kind.
 void CheckKind(RestorationKind kind, RestorationView view) {
   if (view == RestorationView::kNeighbours && !RowOf(kind).sees_neighbours) {
     throw Error{"--sees=neighbours needs --kind=window"};
@@ -71,9 +72,9 @@ void ReadOptions(RestorationRunOptions* options) {
   OrFail(ParseName("--sees", FLAGS_sees, &training.view));
   OrFail(ParseName("--training", FLAGS_training, &training.training));
   CheckKind(*kind, training.view);
-  FoldsFromCommandLine();  // refuses what does not go together
+  FoldsFromCommandLine();  // throws where flags contradict each other
   if (Given("forecast")) {
-    throw Error{"--forecast: restorations are scored on both forecasters together; leave it out"};
+    throw Error{"--forecast: restorations always use both forecasters; leave it out"};
   }
   options->observed = ObservedFrames();
   if (options->observed > 0 && FLAGS_crossvalidate == 0) {
@@ -138,7 +139,7 @@ int Train(const std::vector<BodyRecording>& recordings, const RestorationRunOpti
   return kDone;
 }
 
-// Adds the recordings of --more_settings, without those that are learnt from (and scored) anyway.
+// Adds the recordings of --more_settings that are not in --setting.
 void AddMoreRecordings(const std::vector<Recording>& known, RestorationRunOptions* options) {
   if (FLAGS_more_settings.empty()) return;
   for (const Recording& recording : LoadBodiesOfSetting(FLAGS_more_settings)) {
@@ -169,7 +170,8 @@ int Run() {
 int main(int argc, char** argv) {
   pushid::RestartWithBlasOfProcessor(argv);
   return pushid::RunApp(argc, argv,
-                        "pushid-train-restoration trains networks that make bodies of pendulums.\n"
+                        "pushid-train-restoration trains networks that predict bodies from "
+                        "pendulums.\n"
                         "  pushid-train-restoration --recordings=recordings/manifest.json "
                         "--model=model.json --out=restoration",
                         Run);

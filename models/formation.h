@@ -29,7 +29,7 @@ constexpr EnumNames<FormationShape, 3> Names(FormationShape) {
 // 41 ... people; in between its outermost ring is filled from the corners on the x axis outwards.
 std::vector<Eigen::Vector2d> FormationPositions(FormationShape shape, int people, double spacing);
 
-// Everybody upright, at rest, with the same body.
+// People upright and at rest, all with the same body.
 Scene FormationScene(const std::vector<Eigen::Vector2d>& positions, const Body& body, double dt);
 
 // A half-sine; of a net push the rows, which the model's tail follows.

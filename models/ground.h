@@ -1,12 +1,12 @@
-// models: ground that moves: a platform that is shifted or tilted.
+// models: moving ground: a platform that is shifted or tilted.
 //
-// The model lives in the ground's frame: q is what the ground sees. With a_g the ground's
-// acceleration and gamma its second derivative of tilt, people feel the generalized force
+// The state q is in the ground's frame. With a_g the ground's acceleration and gamma the second
+// derivative of its tilt, the generalized force on a person is
 //   -M(q) A - (g_n / g - 1) G(q),   A = [a_gx - g_x, a_gy - g_y, gamma_theta, gamma_phi]
-// with g_x, g_y the components of gravity along the ground and g_n that into it: a frame that
-// accelerates and one that is tilted cannot be told apart. The ground is turned by R = R_x(phi)
-// R_y(theta), as a rod is: g_x = g cos(phi) sin(theta), g_y = -g sin(phi), g_n = g cos(phi)
-// cos(theta). gamma acts as about the cart, to first order in the angles.
+// with g_x, g_y the components of gravity along the ground and g_n that into it: acceleration and
+// tilt of a frame are equivalent. The ground is turned by R = R_x(phi) R_y(theta), as a rod is: g_x
+// = g cos(phi) sin(theta), g_y = -g sin(phi), g_n = g cos(phi) cos(theta). gamma acts as about the
+// cart, to first order in the angles.
 #pragma once
 
 #include <algorithm>
@@ -22,19 +22,19 @@ struct GroundStep {
   double gravity = kGravity;                               // g_n: towards the ground, m/s^2
 };
 
-// The place of the ground in the laboratory: m, m; tilt about y and about x as theta and phi are,
-// rad.
+// The place of the ground in the laboratory: x, y (m) and the tilts about y and x, defined like
+// theta and phi (rad).
 using GroundPose = Vector4<double>;
 
 // The ground's motion by frame; empty: it does not move.
 struct GroundMotion {
   std::vector<GroundPose> poses;  // one per frame
-  std::vector<GroundStep> steps;  // one per frame; of the last the one before
+  std::vector<GroundStep> steps;  // one per frame; the last repeats the one before
   double dt = 0.0;                // s
-  GroundStep after;               // of ground that stays where the record ends
+  GroundStep after;               // after the end of the record, where the ground rests
 
   bool moves() const { return !poses.empty(); }
-  // The step from any frame: at rest where the ground does not move, or its record is over.
+  // The step from any frame; at rest if the ground does not move or its record has ended.
   const GroundStep& StepAt(int frame) const {
     const size_t at = static_cast<size_t>(frame);
     return at < steps.size() ? steps[at] : after;
@@ -45,22 +45,22 @@ struct GroundMotion {
   }
 };
 
-// The motion through such poses, frame by frame: its accelerations are those by which semi-implicit
-// Euler steps along them, from rest. dt: s.
+// The motion through poses, frame by frame: semi-implicit Euler with its accelerations reproduces
+// the poses, from rest. dt: s.
 GroundMotion GroundThrough(std::vector<GroundPose> poses, double dt);
 
-// The frame before the ground leaves its place, by a twentieth of how far it goes: what was
-// measured is never quite at rest. As many as there are where it goes nowhere.
+// The last frame before the ground has moved by a twentieth of its largest displacement (measured
+// ground is never exactly at rest); the number of frames if it does not move.
 int FirstMotion(const std::vector<GroundPose>& poses);
 
-// A state as the laboratory sees it, its rates as those by which semi-implicit Euler comes there:
-// from where the laboratory saw it a frame before. origin: below.
+// A state in the laboratory's frame; its rates are the differences from the previous frame's place
+// in the laboratory, as in semi-implicit Euler. origin: as below.
 PendulumState<double> InLaboratory(const GroundMotion& ground, int frame,
                                    const Vector3<double>& origin,
                                    const PendulumState<double>& state);
 
-// A point of the laboratory as the ground sees it, and back: less its shift, and turned back by its
-// tilt about `origin`, where a person stood at frame 0.
+// A point from the laboratory's frame to the ground's, and back: the shift is subtracted, and the
+// tilt about `origin`, the person's place at frame 0, is undone.
 Vector3<double> OnGround(const GroundPose& pose, const Vector3<double>& origin,
                          const Vector3<double>& point);
 Vector3<double> PointInLaboratory(const GroundPose& pose, const Vector3<double>& origin,

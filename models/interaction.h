@@ -12,7 +12,7 @@
 
 namespace pushid {
 
-// How a person stood at frame 0.
+// A person's pose at frame 0.
 struct FirstPose {
   Vector4<double> q = Vector4<double>::Zero();
   Angles<double> angles;

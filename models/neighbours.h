@@ -31,8 +31,8 @@ class NeighbourGrid {
   explicit NeighbourGrid(std::vector<int> rank) : rank_(std::move(rank)) {}
 
   void Build(const std::vector<Eigen::Vector2d>& at, const Eigen::Vector2d& reach);
-  // Everybody from the canonical place `from` on, but `person`, within the reach along both axes
-  // for whom keep(other), in canonical order.
+  // Finds the people within reach of `person` along both axes, of canonical rank `from` or higher
+  // and with keep(other), in canonical order.
   template <typename Keep>
   void Near(int person, int from, const Keep& keep, std::vector<int>* near) const {
     near->clear();

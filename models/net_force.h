@@ -26,9 +26,9 @@ template <typename T>
 struct NetForce {
   std::array<Vector4<T>, kNumForceParts> parts;
   Angles<T> angles;  // of the state at which it acts
-  // Where feet hold: the ground's resistance (N s/m) to what the cart's velocity after the step is
-  // more than that of the feet, a part of the friction once that is known (AddGround); where they
-  // step as well, the feet after the step.
+  // For feet that hold or step: the ground's resistance (N s/m) to the difference between the
+  // cart's velocity after the step and that of the feet, added to the friction when the former is
+  // known (AddGround); feet_velocity and, for feet that step, the feet after the step.
   T ground = T(0.0);
   Eigen::Matrix<T, 2, 1> feet_velocity{T(0.0), T(0.0)};  // m/s, of the middle between them
   FeetState<T> next_feet;

@@ -16,14 +16,14 @@ struct InteractionTerms {
   bool spring = false, damping = false;  // of contact
   bool ldp_published = false;
   bool learned = false;
-  bool learned_in_range = false;  // LDP's: of every neighbour, not of those who touch
+  bool learned_in_range = false;  // LDP's: from all neighbours in range, also without contact
 
   // Terms that depend on the distance of the points of contact, and terms that depend on that of
   // the carts.
   bool Contact() const { return spring || damping || (learned && !learned_in_range); }
   bool AtCarts() const { return ldp_published || (learned && learned_in_range); }
   bool Any() const { return Contact() || AtCarts(); }
-  // One gives what the other gets: contact alone.
+  // Whether forces between two people are equal and opposite, as those of contact are.
   bool Mutual() const { return Any() && !learned && !AtCarts(); }
 };
 
@@ -37,7 +37,7 @@ inline constexpr InteractionTermName kInteractionTerms[] = {
     {"damping", &InteractionTerms::damping},
     {"ldp_published", &InteractionTerms::ldp_published}};
 
-// White forces that act on everybody beside all others (process_noise.h).
+// White forces on all people in addition to the modelled ones (process_noise.h).
 enum class ProcessNoise {
   kNone,
   kDiagonal  // one standard deviation for each generalized force
@@ -97,7 +97,7 @@ constexpr EnumNames<Directions, 3> Names(Directions) {
            {"axes", Directions::kAxes}}};
 }
 
-// How the gains, quoted for the reference person, carry over to another body.
+// The scaling of gains, which are those of the reference person, to another body.
 enum class GainScaling {
   kNone,  // the same newtons for everybody
   kMass,  // times M / 85 kg (LDP's data have one mass scale)
@@ -156,7 +156,7 @@ constexpr EnumNames<CartDerivative, 2> Names(CartDerivative) {
   return {{{"none", CartDerivative::kNone}, {"backward", CartDerivative::kBackward}}};
 }
 
-// How late active feedback comes (reaction_delay.h).
+// The delay of active feedback (reaction_delay.h).
 enum class Delay {
   kNone,         // at once
   kOne,          // all of it after one reaction_delay
@@ -166,7 +166,7 @@ constexpr EnumNames<Delay, 3> Names(Delay) {
   return {{{"none", Delay::kNone}, {"one", Delay::kOne}, {"ankle_and_step", Delay::kAnkleAndStep}}};
 }
 
-// Where a body's mass is (ipm.h).
+// The distribution of a body's mass (ipm.h).
 enum class BodyModel {
   kLdp,             // nine tenths at the hip; of who stands, that of an average body (standing.h)
   kAnthropometric,  // where the recorded segments have it (de Leva 1996)

@@ -68,14 +68,13 @@ Eigen::Matrix3d Rodrigues(const Eigen::Vector3d& map);
 // A column a joint, m. maps: three numbers a joint.
 Eigen::Matrix3Xd JointPositions(const JointTree& tree, const Eigen::VectorXd& maps);
 
-// How often one symbol follows another, and how unlike two such statistics are: the
-// comparison of symbolic social cues (SSCP) of Tanke et al., ICCV 2023 (called SDM), for any
-// symbols.
+// Transition frequencies of symbols and the distance between two of them: the comparison of
+// symbolic social cues (SSCP) of Tanke et al., ICCV 2023 (called SDM), for any symbols.
 //
 //   P[a][b]  share of the steps that lead from symbol a to symbol b; all of them sum to 1
 //   D(p, q) = sqrt((KL(p | m) + KL(q | m)) / 2), m = (p + q) / 2, natural logarithm
 //
-// D is Jensen and Shannon's distance: 0 of equal statistics, sqrt(ln 2) of disjoint ones.
+// D is the Jensen-Shannon distance: 0 for equal frequencies, sqrt(ln 2) for disjoint ones.
 
 using Symbols = std::vector<int>;  // of one person, frame by frame; from 0 on
 

@@ -38,7 +38,7 @@ constexpr EnumNames<PushKind, 3> Names(PushKind) {
 
 inline constexpr double kTailReferenceDuration = 0.1, kLongestTailDuration = 0.4;  // s
 
-// One push in a scene; row i drives the step from frame start_frame + i to the next.
+// A push in a scene; row i drives the step from frame start_frame + i to the next.
 struct ScenePush {
   int person = 0;
   int start_frame = 0;

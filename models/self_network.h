@@ -1,5 +1,5 @@
-// models: a network as a part of the self force: what a person does beyond balance and friction,
-// learned from the person's own state alone.
+// models: a network as a part of the self force, in addition to balance and friction; its input is
+// the person's own state alone.
 //
 //   u = [e_theta/0.15, e_phi/0.15, xd/0.8, yd/0.8, thd/0.6, phd/0.6]
 //   k = [(M - 85 kg)/20 kg, 1]            what does not change during a rollout
@@ -12,11 +12,11 @@
 //          c' = f c + i g,  h' = o tanh(c'),  F = 2 (85 kg) [O h' + d]
 //
 // s is the logistic function, products of vectors are by element, memories start at zero. In `mlp`
-// what could answer to k alone has no bias and no mass: a person at rest (u = 0) feels exactly no
-// force, whatever the weights, and O = 0 is no force at all. `ldp` has no such guarantee: it is the
-// network of Yue et al. (CVPR 2024, Eq. 6): mass among the inputs, an embedding of 32, an LSTM of
-// 256 with the two biases of a gate that LibTorch has: 298,244 weights. Rejected: small GRUs and
-// LSTMs, of which no held-out model of the 32 recordings settled (hipADE + 0.10 and + 0.05 m).
+// the response to k alone is subtracted: at rest (u = 0) the force is exactly zero for any weights,
+// and O = 0 is no force at all. `ldp` has no such guarantee: it is the network of Yue et al. (CVPR
+// 2024, Eq. 6), with the mass as an input, an embedding of 32, and an LSTM of 256 with two biases
+// per gate as in LibTorch: 298,244 weights. Rejected: small GRUs and LSTMs, with which no held-out
+// model of the 32 recordings settled (hipADE + 0.10 and + 0.05 m).
 //
 // Weights are one flat array: E, then the rows [W C] (of ldp [W U b b'], g among them), then O, of
 // ldp [O d]; each matrix by rows.
@@ -31,12 +31,12 @@
 
 namespace pushid {
 
-// Inputs of the learned terms of a person, in units of typical ranges, and how these
-// terms read matrices from a flat array of weights.
+// Inputs of the learned terms of a person, in units of typical ranges, and matrices within a flat
+// array of weights.
 
 template <typename T>
 using VectorX = Eigen::Matrix<T, Eigen::Dynamic, 1>;
-// Rows of a matrix in a flat array, each followed by the next after a stride.
+// A matrix in a flat array, row by row with a stride.
 template <typename T>
 using ConstRows =
     Eigen::Map<const Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>, 0,
@@ -51,7 +51,7 @@ inline constexpr double kNetworkAcceleration = 2.0;  // m/s^2 and m^2/s^2, of fo
 
 inline constexpr int kMotionInputs = 6;
 
-// The first of u: e = (theta, phi) less the posture, and the velocities.
+// Sets the first inputs of u: e = (theta, phi) minus the posture, and the velocities.
 template <typename T>
 void SetMotionInputs(const T& e_theta, const T& e_phi, const Vector4<T>& qd, VectorX<T>* u) {
   (*u)[0] = e_theta / kNetworkAngle;
@@ -62,7 +62,7 @@ void SetMotionInputs(const T& e_theta, const T& e_phi, const Vector4<T>& qd, Vec
   (*u)[5] = qd[3] / kNetworkRate;
 }
 
-// Their derivatives by [theta, phi, qd].
+// Derivatives of the motion inputs by [theta, phi, qd].
 inline Eigen::Matrix<double, kMotionInputs, 1> MotionInputScales() {
   Eigen::Matrix<double, kMotionInputs, 1> scales;
   scales << kNetworkAngle, kNetworkAngle, kNetworkSpeed, kNetworkSpeed, kNetworkRate, kNetworkRate;
@@ -159,7 +159,7 @@ struct NetworkState {
   }
 };
 
-// One step of the network, its inputs set: the memory goes on, and the force is what it answers.
+// One step of the network after its inputs were set: advances the memory and returns the force.
 template <typename T>
 Vector4<T> StepNetwork(const NetworkShape& shape, const T* weights, NetworkState<T>* state) {
   if (!shape.any()) return Vector4<T>::Zero();

@@ -1,54 +1,55 @@
-// models: feet that stand, and feet that step: one foot, to a place, in a time.
+// models: feet that stand, and feet that step: which foot, to which place, and when.
 //
-// All places are seen from the middle between the ankles, where the cart is, in m. h is the hip, v
-// its velocity, h0 the hip in the rest posture, omega = sqrt(g / l), xi = h + v / omega the capture
-// point, d half the way between the feet, along x and y, l the rod. b, b_back and b_side are the
-// parameters support_front, _back and _side; f is foot_front, kappa step_gain, t_on step_onset and
-// t_s step_swing.
+// All places are relative to the cart, the middle between the ankles, in m. h is the hip, v its
+// velocity, h0 the hip in the rest posture, omega = sqrt(g / l), xi = h + v / omega the capture
+// point, d half the distance between the feet, along x and y, l the rod. b, b_back and b_side are
+// the parameters support_front, _back and _side; f is foot_front, kappa step_gain, t_on step_onset
+// and t_s step_swing.
 //
 // The centre of pressure c under both feet carries the hip, h'' = omega^2 (h - c):
 //   c = h0 + lim(k (h - h0) + k' v),   k = Kp / (m g l), k' = Kd / (m g l)
 // lim keeps it, smoothly, within the feet: d + f in front, d + 0.05 m behind, d + 0.03 m beside the
-// ankles. Who has stepped takes hold of xi, k = 2.5, k' = 2.5 / omega, about where the middle will
-// be once the other foot stands beside the one that landed, or z of the way there; z goes from 0 to
-// 1 while that step is prepared. Under one foot the same about that foot: in front up to b / 2
-// during the first step, in which people let themselves fall, and up to f after it. Sideways c
-// stays between both feet, the one in the air as well: people shift their weight beforehand.
+// ankles. After a step, c controls xi instead (k = 2.5, k' = 2.5 / omega), about the middle between
+// the feet once the other foot has been placed beside the one that landed, or z of the way there; z
+// rises from 0 to 1 while that step is prepared. On one foot the same holds about that foot: in
+// front up to b / 2 during the first step, in which people let themselves fall, and up to f after
+// it. Sideways c stays between both feet, also while one is in the air: people shift their weight
+// before.
 //
 // A step is prepared while the capture point is beyond the support. With the clock a (s),
 //   rho^2 = (xi_x / (b + d_x))^2 + ((xi_y - h0_y) / (b_side + d_y))^2,   b_back where xi_x < 0
 //   a' = B (1 + S(rho - 1)) + (1 - B) (w t_on / 0.6 s - (1 - w) a / 0.2 s)
 //   B = 1 / (1 + exp((1 - rho) / 0.05)),   S(u) = (u + sqrt(u^2 + 0.04)) / 2,
-// w = e^2 / (e^2 + (0.02 m)^2) after a step, 0 before; e is d less its value at the start, of feet
-// abreast: the rear foot is brought up. At a = t_on the foot that did not land last (at first the
-// rear one; of feet side by side, that on the side of xi) leaves the ground, for t_s + (how far it
-// is behind) / 4.4 m/s. With xi' where the capture point will be at landing,
+// w = e^2 / (e^2 + (0.02 m)^2) after a step, 0 before; e is d minus its initial value for feet side
+// by side, so that the rear foot is brought up. At a = t_on the foot that did not land last (at
+// first the rear one; if the feet are side by side, the one on the side of xi) leaves the ground,
+// for t_s + (its distance behind the other) / 4.4 m/s. With xi' the capture point at landing,
 //   place = the standing foot + kappa (xi'_x - h0_x - the standing foot), at most 1.2 l; backwards
-// kappa is 1, since c hardly reaches behind the foot and a shorter step catches nobody;
-// sideways it keeps its distance, and goes as far as xi' is off the middle of the two, at most 0.4
-// m. On landing the support is new, and a = t_on - 0.06 s if xi' is beyond that too. Legs have no
-// mass: a foot in the air moves the cart by half its own way, and the hip does not feel it.
+// kappa is 1, because c hardly reaches behind the foot and a shorter step would not prevent a fall;
+// sideways the foot keeps its distance, plus the distance of xi' from the middle of both feet, at
+// most 0.4 m. Landing changes the support, and sets a = t_on - 0.06 s if xi' is outside the new
+// support too. Legs have no mass: a foot in the air moves the cart by half of its own displacement,
+// without an effect on the hip.
 //
-// Among others, that is in a model of people who touch, who is pressed against the one in front
-// does not hold on by the toes: while the first step is prepared f goes to b / 2, over the first
-// third of t_on. And who is pushed hard swings quicker, for t_s / (1 + S(rho - 1) / 4) with rho at
-// lift-off.
+// In a model of people who touch, a person pressed against the one in front does not brake with the
+// toes: while the first step is prepared, f goes to b / 2 over the first third of t_on. Swings of
+// strongly pushed people are quicker, t_s / (1 + S(rho - 1) / 4) with rho at lift-off.
 //
-// Lifting off and landing happen at their moments within a step of the rollout: the clock goes on
-// from there, and c is the mean over the step. How long the foot swings, and the clock on landing,
-// lie between what the frames before and after that moment tell, and are known a step later. So
-// paths are continuous in the parameters, but for which foot steps and whether it does.
+// Lift-off and landing are at times within a step of the rollout: the clock continues from there,
+// and c is the mean over the step. The duration of the swing and the clock at landing are
+// interpolated between the frames before and after, and are known one step later. Paths are
+// therefore continuous in the parameters, except for which foot steps and whether it does.
 //
-// While a `net` push lasts the ground does nothing, since its rows hold the feet's reaction. From a
-// `net_without_friction` push LDP's friction of 100 N s/m was taken out, and it gets that back.
+// During a `net` push there is no ground force, since the push includes the feet's reaction. From a
+// `net_without_friction` push LDP's friction of 100 N s/m was subtracted; here it is added again.
 //
 // Sources: capture point and support, Hof, Human Movement Science 2008; capturability, Koolen et
-// al., Int. J. Robotics Research 2012. The clock and the numbers without a name were chosen by how
-// well they predict recordings of a person left out, and whether who is pushed hard comes to rest.
-// Rejected: a clock that does not know how far xi is beyond (steps come at 0.2 m/s already),
-// support from the hip's place at rest, c under one foot up to b always or up to b / 2 always (who
-// is pushed hard falls), one cart that chases the capture point (who is pushed hard walks on), the
-// law among others for who is alone (people left out are predicted worse).
+// al., Int. J. Robotics Research 2012. The clock and the numbers without a name were chosen by the
+// predictions for people left out, and by whether strongly pushed people come to rest. Rejected: a
+// clock independent of the distance of xi from the support (steps at 0.2 m/s already), support
+// relative to the hip's place at rest, c under one foot always up to b or always up to b / 2
+// (strongly pushed people fall), a cart that follows the capture point (strongly pushed people walk
+// on), and the law of people who touch for single people (worse predictions of people left out).
 #pragma once
 
 #include <cmath>

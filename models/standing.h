@@ -41,7 +41,7 @@ BodyOf<T> StandingBody(const Body& body, const T& com_height) {
           (body.pendulum_ratio / kComOverHip) * com_height};
 }
 
-// Its first moment about the ankles over what com_height is multiplied with, kg m.
+// The body's first moment about the ankles per unit of com_height, kg m.
 inline double MomentPerComHeight(const Body& body) {
   const double share =
       IsPointAtHip(body) ? kMassAboveAnkles : body.point_share * body.pendulum_ratio / kComOverHip;

@@ -58,8 +58,8 @@ void AddStanding(const SelfForce& self, const ParameterSet<T>& p, const Pendulum
       StandingTorque(self, p, Angles<T>(felt.q), felt.qd);
 }
 
-// All that acts on one person. received: from neighbours (interaction.h); network: what the
-// person's own answers (self_network.h).
+// The net force on one person. received: the forces of neighbours (interaction.h); network: the
+// output of the person's network (self_network.h).
 template <typename T>
 NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const SelfForce& self,
                        const ParameterSet<T>& p, int person, int frame,

@@ -79,8 +79,8 @@ Horizontal<T> HalfApart(const FeetState<T>& feet) {
   return {half(feet.apart[0]), half(feet.apart[1])};
 }
 
-// How far xi, from the ankles along x and from where it rests along y, has left the support of feet
-// that are 2 d apart; 1 at its edge.
+// The distance of xi (relative to the ankles along x, to its resting place along y) over the extent
+// of the support in that direction, for feet that are 2 d apart; 1 at the edge.
 template <typename T>
 T SupportRatio(const StanceParameters<T>& p, const Horizontal<T>& xi, const Horizontal<T>& d) {
   using std::sqrt;

@@ -3,10 +3,10 @@
 //   ExpectCorrectJacobian(cost, oracle, blocks, tolerance);   // against another cost function
 //   ExpectCorrectJacobian(cost, blocks, tolerance);           // against Ridders' differentiation
 //   ExpectDirectionalDerivatives(cost, blocks, tolerance);    // the same along a few directions
-// An entry is right when |actual - expected| <= relative * (largest |expected| of its column) +
-// absolute. Relative to the column, not to the entry: an entry that vanishes by cancellation
-// carries the rounding of its column. Outputs are filled with NaN first, so that an entry not
-// wrote is caught; asking for some blocks' Jacobians only must give the same numbers.
+// An entry is right if |actual - expected| <= relative * (largest |expected| of its column) +
+// absolute. The tolerance is relative to the column, because an entry that vanishes by cancellation
+// has the rounding of its column. Outputs are filled with NaN first, so that entries that are not
+// written are found; requests for the Jacobians of some blocks only must give the same numbers.
 #pragma once
 
 #include <ceres/cost_function.h>
@@ -27,19 +27,19 @@ using ParameterBlocks = std::vector<std::vector<double>>;
 
 struct JacobianTolerance {
   double relative = 1e-10;  // to the largest entry of the column
-  double absolute = 1e-13;  // where a whole column vanishes, e.g. at rest
+  double absolute = 1e-13;  // for columns that vanish, for example at rest
   double residual = 1e-14;  // between residuals, relative to 1 or to themselves
 };
 
-// What one call of Evaluate wrote; NaN where it wrote nothing.
+// The outputs of one call of Evaluate; NaN in entries that it did not write.
 struct CostEvaluation {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   bool ok = false;
   Eigen::VectorXd residuals;
-  std::vector<RowMajor> jacobians;  // one per block, NaN where not asked for
+  std::vector<RowMajor> jacobians;  // one per block; NaN if not requested
 };
 
-// wanted: which blocks' Jacobians to ask for; empty means none at all (a null pointer).
+// wanted: blocks whose Jacobians are requested; empty: a null pointer.
 inline CostEvaluation EvaluateCost(const ceres::CostFunction& cost, const ParameterBlocks& blocks,
                                    const std::vector<bool>& wanted) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -60,7 +60,7 @@ inline CostEvaluation EvaluateCost(const ceres::CostFunction& cost, const Parame
   return result;
 }
 
-// Same sizes, and blocks that fit them.
+// Checks that both have the same sizes, which the blocks fit.
 inline void ExpectSameShape(const ceres::CostFunction& cost, const ceres::CostFunction& oracle,
                             const ParameterBlocks& blocks) {
   ASSERT_EQ(cost.num_residuals(), oracle.num_residuals());
@@ -82,7 +82,7 @@ inline void ExpectSameResiduals(const Eigen::VectorXd& actual, const Eigen::Vect
   }
 }
 
-// Names the wrong entries, the first few of them one by one.
+// Describes the wrong entries.
 inline void ExpectSameJacobians(const CostEvaluation& actual, const CostEvaluation& expected,
                                 const JacobianTolerance& tolerance) {
   constexpr int kMaxNamed = 8;
@@ -106,8 +106,8 @@ inline void ExpectSameJacobians(const CostEvaluation& actual, const CostEvaluati
   if (wrong > kMaxNamed) ADD_FAILURE() << wrong << " wrong Jacobian entries in all";
 }
 
-// Without Jacobians, with each block's alone and with each block's missing: the same numbers, and
-// nothing written where nothing was asked for.
+// Evaluates without Jacobians, with each block's alone, and with all but each block's: the numbers
+// must be the same, and nothing else may be written.
 inline void ExpectPartialJacobians(const ceres::CostFunction& cost, const ParameterBlocks& blocks,
                                    const CostEvaluation& full, double residual_tolerance) {
   const CostEvaluation none = EvaluateCost(cost, blocks, {});
@@ -122,7 +122,7 @@ inline void ExpectPartialJacobians(const ceres::CostFunction& cost, const Parame
       EXPECT_EQ(partial.residuals, full.residuals);
       for (size_t b = 0; b < blocks.size(); ++b) {
         if (wanted[b]) {
-          // To rounding: what a held block spares may be added up in another order.
+          // Up to rounding: sums may be in another order if a block is held.
           const double largest = full.jacobians[b].cwiseAbs().maxCoeff();
           EXPECT_LE((partial.jacobians[b] - full.jacobians[b]).cwiseAbs().maxCoeff(),
                     1e-12 * largest)
@@ -151,7 +151,7 @@ inline void ExpectCorrectJacobian(const ceres::CostFunction& cost,
   ExpectPartialJacobians(cost, blocks, actual, tolerance.residual);
 }
 
-// The residuals of a cost function alone, for numeric differentiation.
+// A functor of the residuals of a cost function, for numeric differentiation.
 struct ResidualsOf {
   const ceres::CostFunction* cost;
   bool operator()(double const* const* blocks, double* residuals) const {
@@ -159,11 +159,11 @@ struct ResidualsOf {
   }
 };
 
-// relative: of Ridders' method, about 1e-8 where residuals are of order 1.
+// relative: the error of Ridders' method is about 1e-8 for residuals of order 1.
 inline void ExpectCorrectJacobian(const ceres::CostFunction& cost, const ParameterBlocks& blocks,
                                   const JacobianTolerance& tolerance = {1e-7, 1e-8, 1e-14}) {
   ceres::NumericDiffOptions options;
-  // Short, because |v| of the quadratic damping bends within 1e-3 m/s.
+  // The step is short, because |v| of the quadratic damping has a kink within 1e-3 m/s.
   options.ridders_relative_initial_step_size = 1e-5;
   ceres::DynamicNumericDiffCostFunction<ResidualsOf, ceres::RIDDERS> oracle(
       new ResidualsOf{&cost}, ceres::TAKE_OWNERSHIP, options);
@@ -172,9 +172,9 @@ inline void ExpectCorrectJacobian(const ceres::CostFunction& cost, const Paramet
   ExpectCorrectJacobian(cost, oracle, blocks, tolerance);
 }
 
-// J u against central differences along random directions u, in which all columns weigh alike:
-// every column at once for the price of a few residuals, where there are many models to go through.
-// relative: to the largest entry of J u.
+// Compares J u with central differences along random directions u, in which all columns have the
+// same weight: a cheap check of all columns, for tests of many models. relative: to the largest
+// entry of J u.
 inline void ExpectDirectionalDerivatives(const ceres::CostFunction& cost,
                                          const ParameterBlocks& blocks,
                                          const JacobianTolerance& tolerance = {1e-6, 1e-11, 0.0}) {
@@ -210,8 +210,8 @@ inline void ExpectDirectionalDerivatives(const ceres::CostFunction& cost,
       EXPECT_TRUE(above.ok && below.ok);
       return ((above.residuals - below.residuals) / (2.0 * step)).eval();
     };
-    // A step may cross a kink of a residual, which a shorter one misses, or drown in the rounding
-    // that a rollout amplifies, which a longer one tops.
+    // A long step may cross a kink of a residual; with a short one, the rounding that a rollout
+    // amplifies may dominate.
     Eigen::Index row = 0;
     Eigen::VectorXd expected;
     bool agrees = false;

@@ -1,4 +1,4 @@
-// Motion-capture clips in tests: made ones of four joints, and the real ones where they are.
+// Motion-capture clips in tests: synthetic ones of four joints, and the real ones if available.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,14 +10,14 @@
 
 namespace pushid {
 
-// The folder of the real clips; "" when there are none, in which case a test skips itself.
+// The folder of the real clips; "" if there are none, in which case a test skips itself.
 inline std::string MocapRoot() {
   return SharedFolder("PUSHID_MOCAP", "cmu_mocap", "skeleton.json");
 }
 
 constexpr char kNoMocap[] = "the real clips are not here; name their folder by PUSHID_MOCAP";
 
-// A root, a spine, and an arm to each side; 5 holds the place of 1.
+// A root, a spine, and an arm on each side; joint 5 is at the place of joint 1.
 constexpr char kSmallSkeleton[] = R"({
   "joints": 6, "parents": [-1, 0, 1, 2, 2, 1],
   "offsets_mm": [[0, 0, 0], [0, 500, 0], [0, 300, 0], [200, 0, 0], [-200, 0, 0], [0, 0, 0]],
@@ -25,7 +25,7 @@ constexpr char kSmallSkeleton[] = R"({
   "mirror": "x -> -x; joints 3-3 <-> 4-4"
 })";
 
-// The spine sways in two planes, the more the larger `size` is.
+// The spine sways in two planes; size: amplitude.
 inline std::string SmallClip(int frames, double size, double phase) {
   std::string text;
   for (int t = 0; t < frames; ++t) {

@@ -1,5 +1,4 @@
-// What tests of several rooms share: results without their errors, a folder of their own, small
-// files, the real recordings.
+// Helpers of tests: values of results, temporary folders and files, the real recordings.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,14 +16,14 @@
 
 namespace pushid {
 
-// The value; an error ends the test, which shows it.
+// The value; an error is printed and ends the test.
 template <typename T>
 T Unwrapped(Result<T> result) {
   if (!result.ok()) throw std::runtime_error(result.error().ToString());
   return std::move(result).value();
 }
 
-// What is wrong with it, as a user is told; "no error" where there is none.
+// The error as users read it, or "no error".
 template <typename T>
 std::string ProblemOf(const Result<T>& result) {
   return result.ok() ? "no error" : result.error().ToString();
@@ -33,7 +32,7 @@ inline std::string ProblemOf(const MaybeError& error) {
   return error ? error->ToString() : "no error";
 }
 
-// A fixture with an empty folder that goes away after the test.
+// A fixture with a temporary folder.
 class TempDirTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -46,10 +45,9 @@ class TempDirTest : public ::testing::Test {
     std::filesystem::remove_all(folder_, ignored);
   }
 
-  // Where a file of this name in the folder would be.
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
 
-  // Writes (and overwrites) a file, with the folders on its way; returns its path.
+  // Writes or overwrites a file, creates its folders, and returns its path.
   std::string WriteText(const std::string& name, const std::string& text) const {
     const std::filesystem::path path = folder_ / name;
     std::filesystem::create_directories(path.parent_path());
@@ -57,7 +55,7 @@ class TempDirTest : public ::testing::Test {
     return path.string();
   }
 
-  // How many files the folder holds, in it and below.
+  // Number of files in the folder and below.
   int CountFiles() const {
     int count = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_)) {
@@ -75,8 +73,9 @@ inline std::string ReadText(const std::string& path) {
   return text.str();
 }
 
-// A folder of real data, which has a file of this name in it: the one that the variable names, or
-// ../shared/FOLDER beside the source; "" when there is none.
+// A folder of real data that contains a file of this name: the folder in the environment variable,
+// or
+// ../shared/FOLDER relative to the source; "" if there is none.
 inline std::string SharedFolder(const char* variable, const std::string& folder,
                                 const std::string& file) {
   const char* named = std::getenv(variable);
@@ -88,7 +87,7 @@ inline std::string SharedFolder(const char* variable, const std::string& folder,
   return std::filesystem::exists(root / file, ignored) ? root.string() : "";
 }
 
-// The folder of the real recordings; "" when there are none, in which case a test skips itself:
+// The folder of the real recordings; "" if there are none, in which case a test skips itself:
 //
 //   if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
 inline std::string RecordingsRoot() {

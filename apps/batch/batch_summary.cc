@@ -34,7 +34,7 @@ void AddOnce(const T& one, std::vector<T>* all) {
   if (std::find(all->begin(), all->end(), one) == all->end()) all->push_back(one);
 }
 
-// All metrics by which some job was scored.
+// The metrics of all jobs.
 MetricList HeldOutMetrics(const std::vector<JobResult>& rows) {
   MetricList metrics;
   for (const JobResult& row : rows) {

@@ -1,4 +1,4 @@
-// apps: --published by name.
+// apps: the flag --published.
 #pragma once
 
 #include "apps/flags/command_line.h"
@@ -7,11 +7,11 @@
 DEFINE_string(
     published, "",
     "the settings of a paper: sde (particles; Lyu et al., ACM MM 2021), sdm (diffusion; Tanke et "
-    "al., ICCV 2023); other flags change them; empty: those of pushid");
+    "al., ICCV 2023), which other flags change; empty: pushid's own settings");
 
 namespace pushid {
 
-// The kind of generator whose paper's settings are asked for, if any.
+// The kind of generator whose paper --published names, if any.
 inline std::optional<GeneratorKind> PublishedKind() {
   if (FLAGS_published.empty()) return std::nullopt;
   for (const GeneratorKindRow& row : kGeneratorKinds) {

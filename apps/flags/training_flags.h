@@ -1,4 +1,4 @@
-// apps: flags of the programs that train networks of bodies, and what they do alike.
+// apps: flags and functions of the programs that train networks.
 #pragma once
 
 #include <functional>
@@ -32,7 +32,7 @@ std::string KindHelp(const std::string& noun, const Rows& rows, Keep keep) {
   return "kind of " + noun + ": " + Joined(kinds);
 }
 
-// The folds that the flags ask for; throws where they do not go together.
+// Throws where flags contradict each other.
 inline FoldChoice FoldsFromCommandLine() {
   FoldChoice choice = {FoldScheme::kStratified, FLAGS_crossvalidate, FLAGS_seed};
   OrFail(ParseName("--scheme", FLAGS_scheme, &choice.scheme));
@@ -63,13 +63,13 @@ inline std::string InOut(const char* name) {
   return (std::filesystem::path(FLAGS_out) / name).string();
 }
 
-// Makes the folder, in which the weights can be written.
+// Makes the folder --out and checks that weights can be written there.
 inline void MakeOut() {
   OrFail(MakeFolder(FLAGS_out));
   OrFail(CheckWritable(InOut("weights.npy")));
 }
 
-// The training as a network's file describes it; data: under this key.
+// The training as a network's file describes it, with `data` as `key`.
 inline nlohmann::ordered_json TrainingJson(const char* key, const nlohmann::ordered_json& data) {
   nlohmann::ordered_json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
   json[key] = data;

@@ -1,5 +1,5 @@
-// apps: fits in Python: options by the names of the flags, results with everything the programs
-// say, refits that check them, and the report's figures as data for matplotlib.
+// apps: fits in Python: options named as the flags, results, checks by refits, and the report's
+// figures as data for matplotlib.
 #include <algorithm>
 #include <ctime>
 #include <nlohmann/json.hpp>
@@ -25,7 +25,7 @@ namespace {
 
 using Advised = std::vector<std::pair<std::string, std::string>>;
 
-// The model with its advice as calls.
+// The model with calls in its advice instead of commands.
 FittedModel InCalls(const Model& model, const Advised& calls) {
   FittedModel fitted = *model.fitted;
   fitted.advice.clear();
@@ -122,7 +122,7 @@ std::shared_ptr<Model> FitModel(const std::vector<SharedRecording>& recordings,
   return model;
 }
 
-// A model alone.
+// A model without its recordings.
 std::shared_ptr<Model> WithoutData(Result<FittedModel> read) {
   auto model = std::make_shared<Model>();
   model->fitted = std::make_shared<const FittedModel>(Unwrapped(std::move(read), Fault::kData));
@@ -141,7 +141,7 @@ void Save(const Model& model, const std::string& path) {
   Check(WriteJson(path, ToJson(*model.fitted, run)), Fault::kData);
 }
 
-// A report with figures of the recordings that the model has, if any. Releases the GIL.
+// A report, with figures of the model's recordings if it has them. Releases the GIL.
 Report ReportOf(const FittedModel& fitted, const Model& model) {
   const std::shared_ptr<const FittedTo> to = model.to;
   const JobProgress progress = JobsOf(py::none());
@@ -153,7 +153,7 @@ Report ReportOf(const FittedModel& fitted, const Model& model) {
   return BuildReport(fitted, drawn, 1, progress);
 }
 
-// The page of a model that pushid-fit made has commands, as the program's own.
+// The page of a model from pushid-fit has commands instead of calls.
 void WriteReport(const Model& model, const std::string& path, const Advised& calls) {
   Check(CheckPageName("report", path), Fault::kUsage);
   std::shared_ptr<const FittedModel> fitted = model.fitted;
@@ -163,7 +163,7 @@ void WriteReport(const Model& model, const std::string& path, const Advised& cal
   Check(WriteFileAtomically(path, ToPage(ReportOf(*fitted, model))), Fault::kData);
 }
 
-// Scores as the text of their JSON, and the text of the program that prints them.
+// Scores as JSON text, and as the text that the programs print.
 using ScoresAndText = std::pair<std::string, std::string>;
 
 ScoresAndText EvaluateOn(const Model& model, const std::vector<SharedRecording>& recordings,
@@ -213,7 +213,7 @@ ScoresAndText CrossValidateAll(const std::vector<SharedRecording>& recordings,
   return {json.dump(), CrossValidationText(validated)};
 }
 
-// name, help, default: what the keyword arguments are made from.
+// (name, help, default) of every option.
 py::list OptionList() {
   py::list list;
   const FitOptions defaults;
@@ -226,7 +226,7 @@ py::list OptionList() {
   return list;
 }
 
-// Adds something to a copy of the model, without the GIL, and puts the copy in its place.
+// Applies `add` to a copy of the model without the GIL, and replaces the model by the copy.
 template <typename Add>
 void Extend(Model* model, Add add) {
   const std::shared_ptr<const FittedTo> to = DataOf(*model);
@@ -244,7 +244,6 @@ using PendulumRecordings = std::vector<PendulumRecording>;
 
 using Json = nlohmann::ordered_json;
 
-// A number for each name; none where there are none.
 Json PushesJson(const ExperimentDesign& design) {
   Json rows = Json::array();
   for (const DesignRow& row : design.rows) {
@@ -282,7 +281,7 @@ std::string DesignOf(const Model& model, const std::string& parameter) {
   return json.dump();
 }
 
-// fields(item) of each as a tuple.
+// A list of fields(item).
 template <typename Item, typename Fields>
 py::list Tuples(const std::vector<Item>& items, Fields fields) {
   py::list list;

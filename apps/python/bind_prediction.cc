@@ -1,5 +1,5 @@
-// apps: predictions in Python: from the first frame and the push, from frames as they come, as
-// whole bodies, on formations, and of people who stand.
+// apps: predictions in Python: from the first frame and the push, frame by frame, of whole bodies,
+// of formations, and the linearized loop.
 #include <algorithm>
 #include <array>
 
@@ -36,7 +36,8 @@ Array StatesOf(const RolloutPath<double>& path, int people) {
   });
 }
 
-// hip, states, observed, and bands where there are any. Raises where the rollout left the domain.
+// A dict with hip, states, observed, and bands if there are any. Raises FitError if the rollout
+// left the domain.
 py::dict DictOf(const Prediction& prediction, const PendulumRecording& recording) {
   if (!prediction.status.ok) {
     Raise(Fault::kFit, Error{"recording " + recording.id + ": " + OutsideText(prediction.status)});
@@ -62,7 +63,7 @@ IdentifiedModel With(const Model& model, const std::string& set) {
   return identified;
 }
 
-// Warns of pushes beyond those that the model was fitted to.
+// Warns of pushes outside the range of the fit.
 void WarnOfInputs(const IdentifiedModel& model, const PendulumRecording& recording) {
   for (const Warning& warning : InputWarnings(model, {recording})) Warn(warning.text);
 }
@@ -89,7 +90,7 @@ std::vector<HipPaths> HipsOf(const std::vector<std::vector<std::vector<BandPoint
   return hips;
 }
 
-// Futures by parameters drawn from their covariance, with the errors of the fitted recordings.
+// Futures with parameters drawn from their covariance and errors as those of the fitted recordings.
 std::vector<HipPaths> Drawn(const Model& model, const PendulumRecording& seen, int frames,
                             int samples, uint64_t seed) {
   const BandOptions options{samples, seed};
@@ -143,7 +144,7 @@ py::dict PredictOn(const Model& model, const SharedRecording& recording, int obs
   return dict;
 }
 
-// Everybody's frames as they come; states need the frame before.
+// A predictor that observes frames of all people.
 class Online {
  public:
   Online(const Model& model, const SharedRecording& recording, int frames,
@@ -204,7 +205,7 @@ class Online {
  private:
   std::unique_ptr<IdentifiedModel> model_;
   std::unique_ptr<PendulumRecording> recording_;
-  Recording last_;  // the last two frames
+  Recording last_;  // the last two frames, from which states are computed
   std::unique_ptr<OnlinePredictor> predictor_;
 };
 
@@ -227,7 +228,7 @@ Array Restored(const Restoration& restoration, const Model& model, const SharedR
                   {frames, people, kBodyJoints, 3});
 }
 
-// Adds the values of a wave's picture, and of the table beside it.
+// Adds the values of the picture of a wave and of its table.
 void AddSummaries(const FormationRun& run, const WaveBands& waves, py::dict* dict) {
   py::list onset, displacement, outcome, onset_band;
   for (int n = 0; n < run.num_people(); ++n) {
@@ -258,7 +259,7 @@ void AddSummaries(const FormationRun& run, const WaveBands& waves, py::dict* dic
   (*dict)["fps"] = 1.0 / run.recording.scene.dt;
 }
 
-// push, push_duration, mass, rod: none: as in the fit.
+// push, push_duration, mass and rod: empty: as in the fit.
 py::dict OnFormation(const Model& model, const std::string& shape, int people, double spacing,
                      int pushed, std::optional<double> push, std::optional<double> push_duration,
                      double push_direction, std::optional<double> mass, std::optional<double> rod,

@@ -1,5 +1,4 @@
-// apps: recordings in Python: from manifests, from arrays, of synthetic people; as arrays and
-// bytes.
+// apps: recordings in Python: from manifests, arrays and simulation; as arrays and bytes.
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -15,12 +14,11 @@
 
 namespace pushid {
 
-// An object's state, for pickle, copy and other processes.
+// Fields of a recording, for pickle, copy and other processes.
 PUSHID_FIELDS_OF(Push, person, start_frame, force, file)
 PUSHID_FIELDS_OF(PlateSample, force, centre, weight)
 
-// Roles are of the joints, and go with them. A BVH file's skeleton stays behind: only the programs
-// write motions back into such files.
+// The skeleton of a BVH file is not included: only the programs write BVH files.
 void Fields(JsonArchive& a, RecordedPerson& p) {
   PUSHID_FIELDS(a, p, subject_id, mass_kg);
   a("numbers", p.known.numbers);
@@ -56,7 +54,7 @@ using namespace py::literals;
 
 using Track = std::vector<Eigen::Vector3d>;
 
-// One person's track is a view of the recording itself; those of several are gathered.
+// The track of a single person is a view of the recording; those of several people are copied.
 Array TrackArray(const SharedRecording& recording, Track RecordedPerson::*track) {
   const auto& people = recording->people;
   if (people.size() != 1) {
@@ -80,7 +78,6 @@ Array StatesArray(const SharedRecording& recording) {
   });
 }
 
-// The sum of all pushes by frame and person.
 Array PushArray(const SharedRecording& recording) {
   const int people = static_cast<int>(recording->people.size());
   std::vector<std::vector<Eigen::Vector4d>> force(
@@ -199,7 +196,7 @@ py::tuple EstimatePushOf(const SharedRecording& recording, int person, int first
   return py::make_tuple(RowsArray(push.push.force), window.start, NameOf(push.kind));
 }
 
-// Findings in recordings, a dict each.
+// A dict for each finding.
 py::list FindingsIn(const std::vector<SharedRecording>& recordings) {
   py::list list;
   std::vector<Finding> found = FindingsOf(Pendulums(recordings));
@@ -290,7 +287,7 @@ void CheckHeight(const PushHeight& height) {
   }
 }
 
-// Rows of a push as it was given: (fx), (fx, fy), (fx, fy, fz), or generalized forces.
+// rows: (fx), (fx, fy), (fx, fy, fz), or generalized forces.
 void AddPush(const Array& rows, int person, int start, const PushHeight& height,
              Recording* recording) {
   const py::ssize_t columns = rows.ndim() == 2 ? rows.shape(1) : 0;
@@ -353,7 +350,7 @@ SharedRecording FromArrays(const Array& hip, const Array& left_ankle, const Arra
   AddPlates(plates, &tracks.people);
   const PushHeight height{push_height, push_height_m};
   CheckHeight(height);
-  // The rod and the angles, which turn forces into generalized ones, come with the motion.
+  // Generalized forces need the rod and the angles, which are computed from the motion.
   Warnings warnings;
   Recording recording = Unwrapped(RecordingFromTracks(tracks, {}, &warnings), Fault::kData);
   const Warnings ankles = FacingWarnings({recording});

@@ -1,4 +1,4 @@
-// apps: what the parts of the Python module share.
+// apps: declarations shared by the sources of the Python module.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -57,10 +57,10 @@ inline SolveProgress ProgressOf(const py::object& callable) {
 // Progress of many jobs: (done, total).
 inline JobProgress JobsOf(const py::object& callable) { return CallbackOf<int, int>(callable); }
 
-// Flags and programs as options and calls: "--fix=mu=0" -> "fix={"mu": 0}", "pushid-push" ->
-// "pushid.estimate_push".
+// Text with flags and programs replaced by options and calls: "--fix=mu=0" -> "fix={"mu": 0}",
+// "pushid-push" -> "pushid.estimate_push".
 std::string InPython(const std::string& text);
-// Warnings once each, where they are equal or differ only in the recording.
+// Warnings that are equal or differ only in the recording are combined.
 std::vector<std::string> InPython(const Warnings& warnings);
 // Warns by Python's warnings.warn.
 void Warn(const std::string& text);
@@ -74,7 +74,7 @@ Warnings WarningsOf(const WarningTuples& tuples);
 using SharedRecording = std::shared_ptr<const Recording>;
 std::vector<PendulumRecording> Pendulums(const std::vector<SharedRecording>& recordings);
 
-// A choice by its name.
+// The enum value with this name; raises UsageError.
 template <typename E>
 E Named(const char* argument, const std::string& name) {
   E value{};
@@ -83,7 +83,7 @@ E Named(const char* argument, const std::string& name) {
 }
 
 using Array = py::array_t<double>;
-// value(frame, person) of so many numbers, as (frames, people, size), read-only.
+// value(frame, person), each of `size` numbers, as a read-only array (frames, people, size).
 template <typename Value>
 Array TableArray(int frames, int people, int size, Value value) {
   Array array({frames, people, size});

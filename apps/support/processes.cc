@@ -131,7 +131,7 @@ FolderLock::~FolderLock() {
 Result<bool> FolderLock::Take(const std::string& folder) {
   descriptor_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor_ < 0) return Error{"cannot be opened: " + std::string(strerror(errno)), folder};
-  // On a file system without locks the job runs without one.
+  // If the file system has no locks, the job runs without one.
   return flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
 

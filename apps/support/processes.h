@@ -47,8 +47,8 @@ ChildEnd NextEnded();
 // Kills a child with everything it started.
 void KillChild(pid_t pid, int signal);
 
-// One process at a time in a folder. The lock goes with the process, however it ends, and
-// leaves no file behind. Processes on other machines are not seen.
+// A lock that lets one process at a time use a folder. It ends with the process, however that ends,
+// and leaves no file. It does not exclude processes on other machines.
 class FolderLock {
  public:
   FolderLock() = default;

@@ -90,7 +90,8 @@ void HoldUnusedTail(const std::vector<PendulumRecording>& recordings, FitOptions
 // them: an error that names them. To be asked before a solve.
 MaybeError CheckEffects(const FitProblem& problem);
 
-// Everything but the advice, which also looks at profiles and bootstrap (report/report_text.h).
+// All diagnostics except the advice, which also needs profiles and bootstrap
+// (report/report_text.h).
 Diagnostics Diagnose(const FitProblem& problem, const SolveStart& best,
                      const Uncertainty& uncertainty);
 

@@ -168,7 +168,7 @@ std::string Screen::ToString() const {
   size_t rows = tables.empty() ? 0 : tables.back().rows().size() - 1;
   const size_t kept = std::min(NumLines(TablesText(tables, rows)), kLeastTable);
   const size_t told = std::min(kMostWarnings, warnings.size()), more = warnings.size() - told;
-  // Whole warnings if they fit, otherwise a line of each.
+  // Warnings are printed completely if they fit, otherwise one line of each.
   for (auto* const lines : {&TextLines, &FirstLine}) {
     warned.clear();
     for (size_t i = 0; i < told; ++i) warned += lines("warning: " + warnings[i]);

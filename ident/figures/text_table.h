@@ -80,8 +80,8 @@ struct Screen {
   std::pair<std::string, std::string> next = {};  // a sentence, and what to type
   std::string rest = {};
 
-  // At most 24 lines: the last table loses rows and warnings are only counted where there are too
-  // many, of which three are printed at most.
+  // At most 24 lines: the last table is shortened if necessary, and of the warnings at most three
+  // are printed and the rest counted.
   std::string ToString() const;
 };
 

@@ -1,11 +1,10 @@
-// ident: one forecast to look at: what was recorded, the forecast, and sampled futures as a fan.
+// ident: one forecast for display: recorded motion, the forecast, and sampled futures.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/formats/bvh.h"
 #include "ident/bodies/animation.h"
 #include "models/generators/motion_generator.h"
 
@@ -16,7 +15,7 @@ struct ForecastScene {
   double dt = 0.04;  // s
   ParticleLayout layout;
   Trajectories observed;
-  Trajectories recorded;  // what came after; empty where it is not known
+  Trajectories recorded;  // the true future; empty if unknown
   Trajectories forecast;
   std::vector<SampledFuture> futures;
 
@@ -24,19 +23,12 @@ struct ForecastScene {
   int num_frames() const { return num_observed() + static_cast<int>(forecast.cols()); }
 };
 
-// Every joint has position channels, which replace its offset: positions are exact, and rotations
-// stay zero. Particles on fixed points hang on a root at the origin. Millimetres, the data's axes.
-BvhMotion ToBvh(const Trajectories& motion, const ParticleLayout& layout, double dt);
+// Columns: frame,time_s,source,future,joint,x_m,y_m,z_m with source observed, recorded, forecast or
+// future.
+MaybeError WriteForecastCsv(const std::string& path, const ForecastScene& scene);
 
-// .bvh: observed frames and the forecast; with futures each of them in a file of its own beside it
-// ("out_future_1.bvh"). .csv: frame,time_s,source,future,joint,x_m,y_m,z_m with source observed,
-// recorded, forecast or future. Returns the files' names. Errors: another ending.
-Result<std::vector<std::string>> WritePoses(const std::string& path, const ForecastScene& scene);
-// Errors: an ending that is none of these.
-MaybeError CheckPosesPath(const std::string& flag, const std::string& path);
-
-// The scene as bodies are shown: recorded grey, the forecast and up to 20 of the futures in a
-// colour each; the lowest point stands on the ground.
+// The scene for a page: recorded motion in grey, the forecast and up to 20 futures in a colour
+// each; the lowest point of all stands on the ground.
 Animation ToAnimation(const ForecastScene& scene);
 
 }  // namespace pushid

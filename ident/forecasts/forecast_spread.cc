@@ -20,7 +20,7 @@ struct ScoreRow {
   double unit;
 };
 
-// The first is that of forecasts, the others are those of sampled futures.
+// The first row is that of forecasts, the others are of sampled futures.
 constexpr ScoreRow kScoreRows[] = {
     {"MPJPE_mm", "MPJPE mm", &WindowScores::mpjpe, kMillimetres},
     {"coverage_90", "coverage of 90 %", &WindowScores::coverage, 1.0},

@@ -1,14 +1,13 @@
-// ident: errors of forecasts, and how well sampled futures spread, by horizon.
+// ident: errors of forecasts, and scores of sampled futures, by horizon.
 //
 //   coverage      share of coordinates whose truth lies in the central 90 % of the samples;
-//                 quantile p of n sorted samples stands at place p (n + 1), between two by a
-//                 straight line
+//                 quantile p of n sorted samples is at rank p (n + 1), interpolated linearly
 //   CRPS          mean over coordinates of E|X - y| - E|X - X'| / 2; mm
-//   energy score  the same of whole poses, with their Euclidean distance; mm
+//   energy score  the same for whole poses, with the Euclidean distance; mm
 //   most probable MPJPE of the future with the largest likelihood of its transitions: the optimum
-//                 path among those sampled, without a given end (Fig. 5 of SDE)
-//   best of n     the smallest MPJPE among the samples; smaller with every sample more, so it shows
-//                 what is among them and judges nothing
+//                 path among the samples, without a given end (Fig. 5 of SDE)
+//   best of n     the smallest MPJPE among the samples, which falls with their number and therefore
+//                 is no score
 #pragma once
 
 #include <array>
@@ -23,10 +22,10 @@
 
 namespace pushid {
 
-// Distances of forecasts from what was recorded, by action and horizon.
+// Errors of forecasts by action and horizon.
 //
-// MPJPE: mean distance of joints, all 38 of CMU's, where joints that share a place count with it
-// and those that never move are right. The mean over all is that of the actions' means.
+// MPJPE: mean distance over all 38 joints of CMU's skeleton; joints that share a place share its
+// error, and joints that never move have none. The overall mean is the mean of the actions' means.
 
 using HorizonErrors = std::array<double, kHorizonFrames.size()>;  // m
 
@@ -40,10 +39,10 @@ struct WindowScores {
 struct ForecastScores {
   std::map<std::string, WindowScores> actions;
   WindowScores mean;     // of the actions
-  bool sampled = false;  // whether there were futures
+  bool sampled = false;  // whether futures were sampled
 };
 
-// Below 19 samples the 5 % quantile would stand before the first.
+// With fewer than 19 samples the 5 % quantile would lie before the first.
 inline constexpr int kLeastSamples = 19;
 
 // forecasts: one per window. samples: [window][future], or none at all.
@@ -51,17 +50,17 @@ ForecastScores ScoresOf(const std::vector<ForecastWindow>& windows,
                         const std::vector<Trajectories>& forecasts, const ParticleLayout& layout,
                         const std::vector<std::vector<SampledFuture>>& samples = {});
 
-// The last observed pose, held.
+// The last observed pose, repeated.
 std::vector<Trajectories> ZeroVelocity(const std::vector<ForecastWindow>& windows);
 
 // {"mean": {"windows": 8, "MPJPE_mm": {"80": ...}}, "actions": {"walking": ...}}; of sampled
 // futures also "coverage_90", "CRPS_mm", "energy_score_mm", "most_probable_MPJPE_mm",
 // "best_of_n_MPJPE_mm".
 nlohmann::ordered_json ToJson(const ForecastScores& scores);
-// "walking  9.1  18.8 ..." a line an action, with a head and the mean; below it sampled futures.
+// A table with a row for each action and their mean, and one of sampled futures.
 std::string ForecastScoresText(const ForecastScores& scores);
 
-// The most probable way to a pose (SDE's Fig. 5): among futures whose last pose is near a target,
+// The most probable path to a pose (SDE's Fig. 5): of the futures whose last pose is near a target,
 // the one whose transitions have the largest likelihood.
 struct PathChoice {
   int future = 0;         // its index

@@ -49,7 +49,7 @@ MaybeError CheckEnd(const char* which, const PathEnd& end) {
   return std::nullopt;
 }
 
-// Cubic from end to end: no noise is asked for that an end does not need.
+// The initial path: a cubic from end to end.
 Vector4<double> Between(const PathEnd& from, const PathEnd& to, double share, double seconds) {
   const Vector4<double> apart = to.state.q - from.state.q;
   const Vector4<double> leaving = seconds * from.state.qd;
@@ -114,7 +114,7 @@ Result<ProbablePath> PathBetween(const IdentifiedModel& model, const Body& body,
     problem.AddResidualBlock(cost, nullptr,
                              {nodes[t - 1].data(), nodes[t].data(), nodes[t + 1].data()});
   }
-  // A velocity is held by the node next to the end.
+  // The node next to an end holds its velocity.
   const auto hold = [&](size_t at, const Vector4<double>& q) {
     nodes[at] = q;
     problem.SetParameterBlockConstant(nodes[at].data());

@@ -46,7 +46,7 @@ using Groups = std::vector<GroupMotion>;
 constexpr size_t kMostStatesDrawn = 12;
 constexpr double kFramesAMinute = 60.0 * kWordRate;
 
-// Steps into frame k, of those who last so long.
+// The transitions into frame k of all people with that many frames.
 std::vector<Symbols> StepsInto(const std::vector<Symbols>& all, size_t k) {
   std::vector<Symbols> steps;
   for (const Symbols& symbols : all) {
@@ -71,7 +71,7 @@ void AddWords(const MotionWords& words, const Groups& groups, SocialRow* row) {
   for (size_t k = 0; k < sums.size(); ++k) row->ndms_by_frame.push_back(sums[k] / counts[k]);
 }
 
-// words: null where recorded motion meets itself.
+// words: null for recorded motion, which is not compared with its own words.
 SocialRow Compared(const std::string& name, const Groups& groups, const SocialReport& report,
                    const MotionWords* words) {
   const std::vector<Symbols> counted = CountedStates(groups, report.cues.states);
@@ -128,7 +128,7 @@ Chart ChangesChart(const std::string& title, const Eigen::MatrixXd& counts,
   return chart;
 }
 
-// The row "recorded" in ink, the predictor in colour.
+// The values of the row "recorded" and of the predictor, by frame.
 Chart FrameChart(const std::string& title, const SocialReport& report, const SocialRow& predictor,
                  ByFrame SocialRow::*values) {
   Chart chart{title, "s"};
@@ -236,7 +236,7 @@ std::optional<SocialReport> CompareSocially(const std::vector<BodyRecording>& re
     Groups groups;
     for (size_t i = 0; i < recordings.size(); ++i) {
       const BodyScore& score = summary.recordings[i];
-      // Scores over all frames are no other forecast.
+      // Scores over all frames are of a forecast that is compared already.
       if (score.predicted.empty() || score.first_frame != first_frame) continue;
       const PendulumRecording& pendulum = recordings[i].pendulum;
       groups.push_back({score.predicted, pendulum.scene.dt, pendulum.pushed_person, first_frame});

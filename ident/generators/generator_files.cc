@@ -1,4 +1,4 @@
-// ident: generators written and read.
+// ident: generators: their files, and forecasts of recordings.
 #include "ident/generators/generator_files.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ void CheckLayout(const ParticleLayout& layout) {
   }
 }
 
-// Networks of one kind: "member0", ... in a file, or by another name.
+// Prefixes of tensors' names, which continue with the network's index.
 constexpr char kMember[] = "member";
 constexpr char kSimlpePartner[] = "simlpe";  // beside particles
 
@@ -65,7 +65,7 @@ std::vector<Network> TakeMembers(const std::string& name, const Json& json, cons
 }
 
 double ReadShare(const Json& json, const char* key) {
-  const double share = json.value(key, 0.0);  // older files know no siMLPe
+  const double share = json.value(key, 0.0);
   Demand(share >= 0.0 && share <= 1.0, std::string(key) + " must lie between 0 and 1");
   return share;
 }

@@ -1,9 +1,7 @@
-// ident: learned generators: their files, and what they make of recordings.
+// ident: learned generators: their files, and forecasts of recordings.
 //
-// A generator is a folder: generator.json (what it is, what it was trained on) and
-// weights.npy. Both load without the training code and without LibTorch; restoration_files.h has
-// the layout. Settings of every kind: frames observed and forecast, the rate, the particles; then
-// its own.
+// A generator is a folder with generator.json (settings and training data) and weights.npy, which
+// load without LibTorch; restoration_files.h has the layout.
 #pragma once
 
 #include <functional>
@@ -27,12 +25,12 @@ namespace pushid {
 
 // The kinds of generators, one row each.
 //
-// A new kind is a value and two rows here, and files of its own: the generator and its trainer
-// (models/generators/), a class derived from KindNetworks, and the two functions that the rows name
-// (the trainer's in ident/training/). Both programs then accept it as --kind.
+// A new kind is a value and two rows here, a generator and its trainer (models/generators/), a
+// class derived from KindNetworks, and the two functions named in the rows (the trainer's is in
+// ident/training/). Both programs then accept it as --kind.
 //
-// The tables are two, because nothing but pushid-train-generator needs LibTorch, and a program
-// links everything in the tables it reads.
+// There are two tables, because only pushid-train-generator needs LibTorch, and a program links
+// everything in the tables it reads.
 
 struct GeneratorSamples;          // ident/training/generator_training.h
 struct GeneratorTrainingOptions;  // ident/training/generator_training.h
@@ -40,21 +38,21 @@ struct GeneratorTrainingOptions;  // ident/training/generator_training.h
 enum class GeneratorKind { kParticles, kDiffusion };
 
 struct GeneratorSettings {
-  int observed = 25;                      // frames that it is given
+  int observed = 25;                      // frames
   int predicted = 25;                     // frames that it was trained to forecast
   double rate = 25.0;                     // Hz
-  std::vector<PushKind> push_kinds = {};  // of the pushes learned from; empty: not known
+  std::vector<PushKind> push_kinds = {};  // of the training recordings; empty: unknown
   ParticleLayout layout;
   KeptJson training{};  // provenance
 };
 
-// Settings that may differ from the training. Shares of the blend in `particles` are taken as
-// trained.
+// Settings of a forecast that may differ from the training's. `particles` has no effect on jitter
+// and the shares of the blend, which are as trained.
 struct GeneratorChanges {
   bool ridge = true, simlpe = true;  // false: left out of the blend
   ParticleGeneratorOptions particles = {};
   DiffusionGeneratorOptions diffusion = {};
-  uint64_t seed = 1;  // of the samples that a forecast by diffusion averages
+  uint64_t seed = 1;  // of the samples averaged in a forecast by diffusion
 };
 
 // The networks of a generator, by its kind.
@@ -62,7 +60,7 @@ class KindNetworks {
  public:
   virtual ~KindNetworks() = default;
   virtual GeneratorKind kind() const = 0;
-  // The kind's own settings, beside those of all kinds.
+  // The settings of this kind, in addition to GeneratorSettings.
   virtual nlohmann::ordered_json Settings() const = 0;
   virtual TensorList Tensors() const = 0;
   virtual std::unique_ptr<MotionGenerator> Make(const GeneratorSettings& settings,
@@ -70,8 +68,7 @@ class KindNetworks {
 };
 using SharedNetworks = std::shared_ptr<const KindNetworks>;
 
-// settings: as Settings() says; of_all: what every kind has. Throws nlohmann's exceptions, and
-// Demand's where something does not fit.
+// settings: as Settings() returns them. Throws nlohmann's exceptions and std::runtime_error.
 using GeneratorReader = SharedNetworks(const nlohmann::ordered_json& settings,
                                        const GeneratorSettings& of_all, TensorFields* reader);
 GeneratorReader ReadParticles, ReadDiffusion;
@@ -80,11 +77,11 @@ struct GeneratorKindRow {
   const char* name;
   GeneratorKind value;
   const char* what;  // for the list of kinds on the command line
-  // Recordings of groups whose people see each other, which physics may blend with, shown any
-  // number of frames. Otherwise clips of motion capture, one body by itself.
+  // true: recordings of groups, with any number of observed frames, which may be blended with
+  // physics; false: clips of motion capture, one body each.
   bool groups;
-  int seeds;          // networks that are averaged, if no flag says otherwise
-  const char* paper;  // whose settings --published takes
+  int seeds;          // default number of networks that are averaged
+  const char* paper;  // value of --published for its settings
   GeneratorReader* read;
 };
 
@@ -98,9 +95,9 @@ inline constexpr GeneratorKindRow kGeneratorKinds[] = {
 constexpr const auto& Names(GeneratorKind) { return kGeneratorKinds; }
 static_assert(RowsAreInOrder(kGeneratorKinds), "RowOf finds a row by its value");
 
-// Takes the trainer of every seed, in turn, to its end.
+// Runs a trainer to its end; called for each seed in turn.
 using SeedRunner = std::function<void(Trainer* trainer)>;
-// Error: nothing to learn from.
+// Errors: no training data.
 using GeneratorTrainer = Result<SharedNetworks>(const GeneratorSamples& samples,
                                                 const GeneratorTrainingOptions& options,
                                                 const SeedRunner& run);
@@ -126,11 +123,8 @@ struct TrainedNetworks {
 
 MaybeError WriteGenerator(const std::string& folder, const TrainedNetworks& trained);
 
-// Errors: no such folder, settings or tensors that are missing or do not fit.
+// Errors: no such folder; settings or tensors that are missing or invalid.
 Result<TrainedNetworks> ReadGenerator(const std::string& folder);
-
-// The networks of each kind of generator, as its trainer leaves them and its file holds
-// them.
 
 struct TrainedParticles : KindNetworks {
   std::vector<ParticleNetwork> members;  // of one structure
@@ -155,38 +149,36 @@ struct TrainedDiffusion : KindNetworks {
                                         const GeneratorChanges& changes) const override;
 };
 
-// People who are pushed, as particles: 22 joints whose places count from where the hip
-// stands above the floor at frame 0, and the push as what acts on them.
+// Pushed people as particles: 22 joints, relative to the floor below the hip at frame 0, with the
+// push as controls.
 //
-// Everybody faces the way of the published pushes, +x, or is to be turned there first: a mirror
-// changes y. A push of a frame is [Fx, Fy, Ftheta, Fphi] over the mass, in N/kg and N m/kg.
+// People must face +x, the direction of the published pushes, because mirroring changes the sign of
+// y. The push of a frame is [Fx, Fy, Ftheta, Fphi] over the mass, in N/kg and N m/kg.
 
 inline constexpr int kPushControls = 4;
 
 ParticleLayout PushLayout(const std::vector<std::string>& joint_names);
 
-// One person, all frames of the recording; pushes of others are not seen.
+// All frames of one person, with the pushes on this person alone.
 ObservedMotion ParticlesOf(const BodyRecording& recording, int person);
-// Their body again, where the particles stand.
+// The inverse; place: that of ObservedMotion.
 BodyMotion BodyFromParticles(const Trajectories& motion, const Eigen::Vector2f& place);
 
-// The prediction of physics that see as many frames as the generator. Errors: a model that leaves
-// its domain.
+// The prediction of physics from as many observed frames as the generator has. Errors: a rollout
+// that leaves the model's domain.
 Result<Prediction> PredictBeside(const GeneratorSettings& settings, const IdentifiedModel& physics,
                                  const BodyRecording& recording, int frames = 0);
 
-// Everybody of a recording, for generators whose people see each other.
 std::vector<ObservedMotion> GroupOf(const BodyRecording& recording);
 
 // The kinds of a scene's pushes, each once.
 std::vector<PushKind> PushKindsOf(const Scene& scene);
-// Says which pushes are of a kind that the generator has not learned from; empty: none.
+// A warning about pushes of kinds that the training did not have; empty: there are none.
 std::string OtherPushKinds(const GeneratorSettings& settings, const Scene& scene);
 
-// A generator's bodies of a recording whose first `observed` frames it is shown: those, then its
-// forecast to the recording's end, or for `frames` frames in all. physics: predict the hips that
-// the forecast may be blended with; null: none. Errors: a recording that is not at the generator's
-// rate, or too short; those of PredictBeside.
+// The observed frames of a recording, then the generator's forecast to the recording's end, or up
+// to `frames` frames in total. physics: predicts the hips for blending; null: no blending. Errors:
+// a recording of another rate, or too short; those of PredictBeside.
 Result<std::vector<BodyMotion>> GenerateBodies(const GeneratorSettings& settings,
                                                const MotionGenerator& generator,
                                                const BodyRecording& recording,

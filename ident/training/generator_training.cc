@@ -1,4 +1,4 @@
-// ident: trainings of generators: seeds one after the other, and the kinds' own.
+// ident: trainings of generators, and their cross-validation.
 #include "ident/training/generator_training.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRidgePenalty = 1e-2;  // m^2
 
-// Networks of so many seeds; data: what their trainer learns from.
+// Trains networks of `seeds` seeds; data: the first arguments of OfKind::Make.
 template <typename OfKind, typename Options, typename Network, typename... Data>
 void TrainSeeds(const Options& of_kind, int seeds, const GeneratorTrainingOptions& options,
                 const SeedRunner& run, std::vector<Network>* members, const Data&... data) {
@@ -159,7 +159,7 @@ namespace {
 
 constexpr int kShown = 20;  // frames, of generator_shown_20
 
-// model: the fold's physics, which predict the hips that forecasts are blended with.
+// model: the fold's physics, for blending.
 Result<BodyScores> ScoreGenerator(const TrainedNetworks& trained,
                                   const std::optional<IdentifiedModel>& model,
                                   const GeneratorValidationOptions& validation,

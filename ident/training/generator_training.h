@@ -1,5 +1,5 @@
-// ident: training of generators: several seeds, one after the other, and the linear forecast beside
-// them. Needs LibTorch (behind models/).
+// ident: training of generators: several seeds in turn, and the partners of a blend. Needs LibTorch
+// (behind models/).
 #pragma once
 
 #include <optional>
@@ -14,16 +14,16 @@
 
 namespace pushid {
 
-// TrainerOptions::seed is the first network's.
+// TrainerOptions::seed: of the first network; it rises by one for each further network.
 struct GeneratorTrainingOptions : TrainerOptions {
   GeneratorKind kind = GeneratorKind::kParticles;
-  // Options of every seed's training, by kind; siMLPe stands beside particles.
+  // Options of each seed's training, by kind; siMLPe is trained with particles.
   ParticleTrainingOptions particles;
   DiffusionTrainingOptions diffusion;
   SimlpeTrainingOptions simlpe;
   int seeds = RowOf(GeneratorKind::kParticles).seeds;  // networks that are averaged
-  // Options of particles: a correction of the whole forecast
-  // (models/generators/particle_generator.h), and shares of the blend that they are part of.
+  // Of particles: the correction of whole forecasts and the blend
+  // (models/generators/particle_generator.h).
   bool correction = true;
   double ridge_share = ParticleGeneratorOptions{}.ridge_share;
   double simlpe_share = ParticleGeneratorOptions{}.simlpe_share;
@@ -32,20 +32,20 @@ struct GeneratorTrainingOptions : TrainerOptions {
 struct GeneratorSamples {
   GeneratorSettings settings;
   std::vector<LearntParticles> learnt, held;       // of particles
-  std::vector<Trajectories> ridge;                 // what the linear forecast learns from
+  std::vector<Trajectories> ridge;                 // of the linear forecast
   std::vector<ObservedGroup> groups, held_groups;  // of diffusion
 };
 
-// All clips but those below test/; with_validation: also the validation clips, which otherwise only
-// show how the training goes. phases: as in LearntMotions.
+// All clips except those below test/; with_validation: validation clips are trained on instead of
+// held out. phases: as in LearntMotions.
 GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation, int phases = 2);
 
-// The groups of the recordings `among`, whole; those of `held` show how the training goes.
+// among, held: indices of the recordings to train on, and of those for the held-out loss.
 GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
                            const std::vector<int>& among, const std::vector<int>& held,
                            int observed);
 
-// Options that the data decide: frames of a window, the rate.
+// Sets options that depend on the data: frames of a window, the rate.
 void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* options);
 
 // Stages of the curve are "network 1, drift", ...
@@ -54,32 +54,30 @@ struct TrainedGenerator {
   std::vector<TrainingPoint> curve;
 };
 
-// Error: nothing to learn from.
+// Errors: no training data.
 Result<TrainedGenerator> TrainGenerator(const GeneratorSamples& samples,
                                         const GeneratorTrainingOptions& options,
                                         const TrainingProgress& progress = nullptr);
 
-// Generators of groups: trained anew for every fold, so that nothing has seen the recordings
-// it is judged on.
+// Cross-validation of generators of groups, which are trained again in every fold. Scores:
 //
-//   generator                  the forecast, of the frames that were not shown
-//   generator_all_frames       the recording as far as it is shown, then the forecast
-//   generator_unblended        without the physics that the forecast is blended with
-//   rigid                      those physics alone, first poses carried by the rods' tips
-//   generator_shown_20         shown 20 frames, no physics
-//   static, constant_velocity  as in body_evaluation.h, shown as many frames as the generator
+//   generator                  the forecast
+//   generator_all_frames       the observed frames, then the forecast
+//   generator_unblended        the forecast without physics
+//   rigid                      physics alone, the first poses moved with the rods' tips
+//   generator_shown_20         the forecast from 20 observed frames, without physics
+//   static, constant_velocity  as in body_evaluation.h, from the generator's observed frames
 //
-// All but generator_all_frames and generator_shown_20 count the frames that the generator was not
-// shown; generator_shown_20 counts those after its 20.
+// Scores are over the frames after the observed ones, except that generator_all_frames is over all.
 
 struct GeneratorValidationOptions : FoldChoice {
-  int observed = 20;  // frames that the generator is shown; 1: the first pose, and the push
-  std::optional<FitOptions> physics;  // of the pendulum, fitted in every fold too
-  GeneratorChanges changes;           // as in its use
+  int observed = 20;                  // frames; 1: the first pose and the push
+  std::optional<FitOptions> physics;  // of the pendulum, refitted in every fold
+  GeneratorChanges changes;
 };
 
-// Errors: those of CrossValidateBodies; recordings that are too short, a fold whose pendulum finds
-// no optimum.
+// Errors: those of CrossValidateBodies; recordings that are too short; a fold whose pendulum's fit
+// does not converge.
 Result<BodyValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
                                               const GeneratorTrainingOptions& options,
                                               const GeneratorValidationOptions& validation,

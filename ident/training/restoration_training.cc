@@ -37,12 +37,11 @@ nlohmann::ordered_json CurveJson(const std::vector<TrainingPoint>& curve) {
 
 namespace {
 
-// `epochs` times the options' effort.
 int EpochsOf(int epochs, const RestorationTrainingOptions& options) {
   return std::max(1, static_cast<int>(std::lround(epochs * options.effort)));
 }
 
-// All frames of all samples side by side; scaled with `scaling`, which is set first if it is empty.
+// All frames of all samples as columns, scaled with `scaling`, which is set first if it is empty.
 RegressionSamples WindowSamples(const std::vector<RestorationSample>& samples, RestorationView view,
                                 Scaling* scaling) {
   int columns = 0;
@@ -77,7 +76,7 @@ std::vector<CvaeSequence> Sequences(const std::vector<RestorationSample>& sample
   return sequences;
 }
 
-// Scales the sequences with the scalings, which are set first where they are empty.
+// Scales the sequences; empty scalings are set first.
 void Scale(std::vector<CvaeSequence>* sequences, CvaeWeights* scalings) {
   const auto scale = [&](Scaling* scaling, auto part) {
     if (scaling->mean.size() == 0) {
@@ -100,7 +99,7 @@ void Scale(std::vector<CvaeSequence>* sequences, CvaeWeights* scalings) {
   scale(&scalings->pendulum, [](CvaeSequence& s) -> Eigen::MatrixXf& { return s.pendulum; });
 }
 
-// Sizes beside those of the autoencoders in LDP's release; the paper's Table 3 has totals only.
+// LDP's release has the sizes of the autoencoders; the paper's Table 3 has totals only.
 std::vector<NetworkSize> SizesOf(const CvaeTrainer& trainer, const CvaeLayout& layout) {
   constexpr int64_t kReleased[4] = {865536, 0, 1097904, 0};
   const std::array<int64_t, 4> parameters = trainer.NumParameters();
@@ -196,12 +195,12 @@ void SplitHeldOut(const std::vector<PendulumRecording>& recordings, const std::v
 namespace {
 
 constexpr int kInnerFolds = 4;        // of the out-of-fold predictions
-constexpr double kStopsEarly = 0.15;  // share of the recordings that stop the training early
+constexpr double kStopsEarly = 0.15;  // share of the recordings for early stopping
 constexpr int kScoredDraws = 3;       // of the latent variable, whose scores are averaged
 
-// Samples of every person of the recordings: the true pendulum, the predicted one (if the path is
-// not empty), and both in the mirror. predictions: in the order of `among`, or none. rod_moves: as
-// for RecordedPeople.
+// Samples of every person of the recordings, with the recorded and the predicted pendulum (unless
+// its path is empty), and both mirrored. predictions: in the order of `among`, or empty. rod_moves:
+// as in RecordedPeople.
 std::vector<RestorationSample> MakeSamples(const std::vector<BodyRecording>& recordings,
                                            const std::vector<int>& among,
                                            const std::vector<Prediction>& predictions,
@@ -230,8 +229,7 @@ std::vector<RestorationSample> MakeSamples(const std::vector<BodyRecording>& rec
   return samples;
 }
 
-// A restoration beside its baselines; of a cvae also, as restoration_drawn, the mean over drawn
-// latent variables.
+// The scores of a restoration and its baselines (CrossValidateChain).
 Result<BodyScores> ScoreTrained(const TensorFolder& content, const IdentifiedModel& model,
                                 const RestorationRunOptions& options,
                                 const BodyRecording& recording) {
@@ -264,7 +262,7 @@ bool LearnsFromPredictions(const RestorationTrainingOptions& options) {
   return options.training != CvaeTraining::kPublished && options.view != RestorationView::kPose;
 }
 
-// The pendulum, and what is predicted of it out of fold where that is learned from.
+// Fits the pendulum, and predicts it out of fold if the training uses predictions.
 Result<FittedFolds> FitPendulum(const std::vector<PendulumRecording>& pendulums,
                                 const std::vector<int>& among, const RestorationRunOptions& options,
                                 const RunProgress& progress) {
@@ -276,7 +274,7 @@ Result<FittedFolds> FitPendulum(const std::vector<PendulumRecording>& pendulums,
   return fitted;
 }
 
-// predictions: as FittedFolds, or none.
+// predictions: those of FittedFolds, or empty.
 Result<TrainedRestoration> TrainOn(const std::vector<BodyRecording>& recordings,
                                    const std::vector<PendulumRecording>& pendulums,
                                    const std::vector<int>& among,

@@ -1,5 +1,5 @@
-// ident: training of restorations, from recordings on, and its cross-validation; and what all
-// trainings share. Needs LibTorch (behind models/).
+// ident: training of restorations from recordings, its cross-validation, and functions for all
+// trainings. Needs LibTorch (behind models/).
 #pragma once
 
 #include <cstdint>
@@ -20,44 +20,43 @@
 
 namespace pushid {
 
-// Runs the trainer to its end; the points of its curve. told: about every new point, whose stage it
-// may name.
+// Runs the trainer to its end and returns its curve. told: called with each new point, whose stage
+// it may change.
 std::vector<TrainingPoint> RunToEnd(Trainer* trainer,
                                     const std::function<void(TrainingPoint* point)>& told);
 
-// The curve in the file of what was trained.
+// The curve as in generator.json and restoration.json.
 nlohmann::ordered_json CurveJson(const std::vector<TrainingPoint>& curve);
 
-// Restorations learn from recorded bodies with their true pendulums and with pendulums that a model
-// predicts without having seen the recording. A network in use gets predicted pendulums, which have
-// errors; so it is trained on both. The predictions are out of fold: a model fitted to the very
-// recording would err too little.
+// Restorations are trained on recorded bodies with their recorded pendulums, and with pendulums
+// that are predicted out of fold: in use, the pendulums are predicted and have errors. The errors
+// of a model fitted to the same recording would be too small.
 
-// The model of `options` fitted to some recordings, without the uncertainty; and for every one of
-// them what a model predicts which was fitted without its fold (ident/fit/fit.h), without forces
-// and hips: an empty path where the rollout failed.
+// A model fitted to some recordings (without uncertainty), and the prediction of each recording by
+// a model fitted without its fold (ident/fit/fit.h), without forces and hips; its path is empty if
+// the rollout failed.
 struct FittedFolds {
   IdentifiedModel model;
   std::vector<Prediction> predictions;  // in the order of `among`
 };
-// among: indices. Fewer recordings than folds: one fold each. 0 folds: no predictions. forecasts:
-// as in SolveModel. Errors: those of SolveModel; folds that cannot be made.
+// among: indices of recordings. folds: at most one per recording; 0: no predictions. forecasts: as
+// in SolveModel. Errors: those of SolveModel; folds that cannot be made.
 Result<FittedFolds> FitFolds(const std::vector<PendulumRecording>& recordings,
                              const std::vector<int>& among, const FitOptions& options, int folds,
                              uint64_t seed, bool forecasts = false);
 
-// One person of one recording with one pendulum, among everybody of the recording.
+// One person of a recording, with the recorded or a predicted pendulum.
 struct RestorationSample {
   std::shared_ptr<const std::vector<RestorationInput>> people;
-  int index = 0;        // who of them
-  BodyMotion motion;    // the true one
-  double weight = 1.0;  // of a frame: recordings count alike
+  int index = 0;        // of the person
+  BodyMotion motion;    // recorded
+  double weight = 1.0;  // of a frame; all recordings have the same total
 
   const RestorationInput& person() const { return (*people)[index]; }
 };
 
-// Indices into `among`'s values: about `share` of the recordings, at least one, spread over
-// settings and strengths, to stop a training early by.
+// Splits `among` into recordings for training and for early stopping (about `share` of them, at
+// least one, spread over settings and strengths); indices into `among`.
 void SplitHeldOut(const std::vector<PendulumRecording>& recordings, const std::vector<int>& among,
                   double share, uint64_t seed, std::vector<int>* training, std::vector<int>* held);
 
@@ -70,7 +69,7 @@ struct RestorationTrainingOptions : TrainerOptions {
   double effort = 1.0;                                  // multiplies the number of steps
 };
 
-// A network, how many numbers it learns, and how many in its paper's release; 0: not known.
+// A network's number of parameters, and that in the paper's release (0: unknown).
 struct NetworkSize {
   std::string name;
   int64_t parameters = 0, released = 0;
@@ -82,49 +81,46 @@ struct TrainedRestoration {
   std::vector<NetworkSize> sizes;
 };
 
-// A training that a kind's own function has prepared (ident/bodies/restoration_files.h).
+// A training as a kind's function prepares it (ident/bodies/restoration_files.h).
 struct RestorationTraining {
   std::shared_ptr<Trainer> trainer;
-  std::function<void(TensorFolder* content)> finish;  // settings and tensors of the trained
+  std::function<void(TensorFolder* content)> finish;  // sets settings and tensors
   std::vector<NetworkSize> sizes{};
 };
-
-// A whole training from recordings: pendulums predicted out of fold, samples, held-out recordings.
 
 struct RestorationRunOptions {
   FitOptions fit;  // of the pendulum
   RestorationTrainingOptions training;
   PostprocessOptions postprocess;
-  int observed = 0;  // frames that held-out recordings show first (prediction/online_predictor.h)
-  // Recordings of other settings to learn from too, with their recorded pendulums; never judged.
+  int observed = 0;  // observed frames of held-out recordings (prediction/online_predictor.h)
+  // Training recordings of other settings, with their recorded pendulums; they are not scored.
   std::vector<BodyRecording> more;
 };
 
-// The choice of folds, and the seed of what is drawn.
 struct FoldChoice {
   FoldScheme scheme = FoldScheme::kStratified;
   int folds = 0;
   uint64_t seed = 1;
 };
 
-// step: "pendulum 2/4", "window epoch 12"; done: share of this step.
+// step: for example "fold 2, epoch 12"; done: share of this step.
 using RunProgress = std::function<void(const std::string& step, double done)>;
 
-// Learns from the recordings with these indices.
+// among: indices of the recordings to train on.
 Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>& recordings,
                                                const std::vector<int>& among,
                                                const RestorationRunOptions& options,
                                                const RunProgress& progress = nullptr);
 
-// Cross-validation of bodies: everything is trained anew for every fold, so that nothing has seen
-// the recordings it is judged on.
+// Cross-validation of bodies: everything is trained again in every fold, without the recordings
+// that it is scored on.
 
 struct BodyValidation {
-  BodyEvaluation evaluation;  // every recording as predicted by the fold that did not see it
+  BodyEvaluation evaluation;             // of each recording in the fold that holds it out
   std::vector<double> training_seconds;  // by fold
 };
 
-// Scores of one held-out recording, one of each name.
+// Scores of one held-out recording, one for each name.
 using FoldScorer = std::function<Result<BodyScores>(const BodyRecording& recording)>;
 // Trains on the recordings with these indices.
 using FoldTrainer = std::function<Result<FoldScorer>(const std::vector<int>& among,
@@ -134,9 +130,9 @@ Result<BodyValidation> CrossValidateBodies(const std::vector<BodyRecording>& rec
                                            const FoldChoice& choice, const FoldTrainer& train,
                                            const RunProgress& progress);
 
-// The whole chain. Of a cvae, restoration_drawn has the mean of the scores of three draws of the
-// latent variable, and restoration is by its mean. Errors also: a fold whose pendulum fit finds no
-// optimum, or which cannot learn from first frames where some are to be seen.
+// The pendulum's fit and the restoration. With kCvae, "restoration" uses the mean of the latent
+// variable, and "restoration_drawn" has the mean scores of three draws. Further errors: a fold
+// whose pendulum's fit does not converge, or which cannot learn forecasts if frames are observed.
 Result<BodyValidation> CrossValidateChain(const std::vector<BodyRecording>& recordings,
                                           const RestorationRunOptions& options,
                                           const FoldChoice& choice,

@@ -1,4 +1,4 @@
-// models: groups sampled and finished.
+// models: the diffusion network, its inputs, and the sampling of groups.
 #include "models/generators/diffusion_generator.h"
 
 #include <algorithm>
@@ -15,14 +15,14 @@ constexpr float kUsualMass = 80.0f, kUsualHip = 1.0f;              // kg, m
 constexpr float kFirstPoseShare = 0.5f;
 constexpr float kFramesUnit = 15.0f;
 
-// Joints seen from the hip; the hip's own rows are its place.
+// Joints relative to the hip; the hip's rows stay.
 Trajectories FromHip(const Trajectories& frames) {
   Trajectories seen = frames;
   for (int j = 1; j < kBodyJoints; ++j) seen.middleRows(3 * j, 3) -= frames.topRows(3);
   return seen;
 }
 
-// Since frame 0; m.
+// Displacements of FromHip since frame 0, m.
 Trajectories Moved(const ObservedMotion& person) {
   Trajectories moved = FromHip(person.frames);
   moved.colwise() -= Eigen::VectorXf(moved.col(0));
@@ -50,7 +50,7 @@ Trajectories FromOwnRows(const Eigen::MatrixXf& rows, const ObservedMotion& pers
   Trajectories frames(kMotionRows, rows.cols());
   for (Eigen::Index t = 0; t < rows.cols(); ++t) {
     const Eigen::Vector3f hip = person.frames.col(0).head<3>() + rows.col(t).head<3>();
-    // The two are not exactly of length 1 where a network estimates them.
+    // Estimated cosine and sine do not exactly have length 1.
     const Eigen::Matrix3f there =
         TurnAboutZ(std::atan2(rows(kOwnFrameRows - 1, t), rows(kOwnFrameRows - 2, t)))
             .cast<float>();
@@ -70,7 +70,7 @@ bool IsPushed(const ObservedMotion& person) {
   return person.controls.size() > 0 && (person.controls.array() != 0.0f).any();
 }
 
-// The place that the push comes from: the pushed people's, or the middle where nobody is pushed.
+// The mean place of the pushed people, or of all if nobody is pushed.
 Eigen::Vector2f Source(const std::vector<ObservedMotion>& group) {
   Eigen::Vector2f pushed = Eigen::Vector2f::Zero(), all = pushed;
   int count = 0;
@@ -100,7 +100,7 @@ void ApplySilu(Eigen::MatrixXf* values) {
   v /= 1.0f + (-v).exp();
 }
 
-// The three frames that a convolution sees below one another; every `stride`-th of them.
+// The kTaps frames of each convolution one below the other, at every `stride`-th frame.
 Eigen::MatrixXf Unfolded(const Eigen::MatrixXf& values, int frames, int stride) {
   const Eigen::Index channels = values.rows(), people = values.cols() / frames;
   const int count = frames / stride;
@@ -128,7 +128,7 @@ Eigen::MatrixXf Perceptron(const DenseLayer& first, const DenseLayer& second,
   return Applied(second, hidden);
 }
 
-// People in order from the left to the right, and from the back to the front.
+// Indices of people, sorted by x, then y.
 std::vector<int> ByPlace(const std::vector<ObservedMotion>& people) {
   std::vector<int> order(people.size());
   std::iota(order.begin(), order.end(), 0);
@@ -148,13 +148,13 @@ void Draw(const std::vector<int>& order, const NormalSource& normal, Eigen::Matr
   }
 }
 
-constexpr double kLastTime = 1.0;  // of the last estimate: hardly any noise is left
+constexpr double kLastTime = 1.0;  // of the last estimate, with hardly any noise
 
 Pose PoseOf(const Trajectories& frames, Eigen::Index t) {
   return frames.col(t).cast<double>().reshaped(3, kBodyJoints);
 }
 
-// Steps fade to 1/e in so many frames, from frame `first` on.
+// Fades the displacements from frame `first` on, to 1/e in `frames` frames.
 void Settle(int first, double frames, Trajectories* motion) {
   const Trajectories before = *motion;
   for (Eigen::Index t = first; t < motion->cols(); ++t) {
@@ -261,7 +261,7 @@ std::vector<ObservedMotion> Changed(const std::vector<ObservedMotion>& group,
   const Eigen::Matrix3f turn = static_cast<float>(change.size) *
                                TurnAboutZ(change.turn).cast<float>() *
                                Eigen::Vector3f(1.0f, side, 1.0f).asDiagonal();
-  // theta leans towards +x, phi towards -y; the push itself is not of another size.
+  // theta leans towards +x, phi towards -y; the push is not scaled.
   Eigen::Matrix4f of_push = Eigen::Matrix4f::Zero();
   const Eigen::Matrix2f flat = turn.topLeftCorner<2, 2>() / static_cast<float>(change.size);
   const Eigen::Matrix2f lean =
@@ -290,7 +290,7 @@ BlockWidths WidthsOf(int block, const DiffusionStructure& structure) {
   if (block == 0) return {structure.NumInputs(), down[0]};
   if (block < kDiffusionLevels) return {down[block - 1], down[block]};
   if (block == kDiffusionLevels) return {pooled(kDiffusionLevels - 1), deepest};
-  // Up from the level below, beside what the level had on the way down.
+  // Input on the way up: the level below, and the level's output on the way down.
   const int level = kDiffusionBlocks - 1 - block;
   const int below = block == kDiffusionLevels + 1 ? deepest : down[level + 1];
   return {below + pooled(level), down[level]};
@@ -398,7 +398,7 @@ Eigen::MatrixXf GroupDenoiser::Pooled(int block, const Eigen::MatrixXf& values) 
   if (structure.AttendsAfter(block)) {
     seen = Attended(network_.pools[structure.join == SocialJoin::kBottleneck ? 0 : block], values);
   } else {
-    // A person's frames below one another, a column per person.
+    // All frames of a person in one column.
     const Eigen::Map<const Eigen::MatrixXf> all(values.data(), size, features_.people);
     for (size_t v = 0; v < views_.size(); ++v) {
       const Eigen::MatrixXf sums = all * views_[v].transpose();
@@ -530,7 +530,7 @@ std::vector<Trajectories> DiffusionGenerator::SampleWhole(const std::vector<Obse
     const double t = kDiffusionTime - k * step;
     const double u = k + 1 == options_.steps ? 0.0 : t - step;
     estimate = denoise.Estimate(noisy, t);
-    // The last estimate keeps what it makes of the frames seen: the seam is what it misses there.
+    // The last estimate keeps its own observed frames: the jump to the true ones fades afterwards.
     if (u <= 0.0) break;
     PutPast(past, &estimate);
     Draw(order, normal, &fresh);

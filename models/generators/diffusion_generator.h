@@ -1,16 +1,17 @@
-// models: groups continued by diffusion. The people of a call are one group, at one rate, whose
-// frame 0 is the first that was seen; the push is what acts on any of them (their controls).
+// models: groups continued by diffusion. The people of one call are a group; frame 0 is the first
+// observed frame, and the push is the sum of the people's controls.
 //
-// From noise at T to hardly any in some steps; frames that were seen are put in the place of
-// what the network estimates for them, after every step (Eq. 6 of SDM). Networks of several seeds
-// take turns, sample by sample. The forecast is the mean of several samples, as the mean joint
-// error asks for, half of them of the group in the mirror, where the network errs otherwise.
-// Recordings end before people stand still: past the longest one learnt from, what
-// the network has them go on with fades, and they come to rest. With a pendulum's path its people
-// are moved some of the way to it. Then each body is finished as restored ones are (postprocess.h):
-// the seam at the last frame seen fades, bones keep the length of frame 0, resting feet stay.
+// Sampling starts from noise at T and removes it in some steps; after every step the observed
+// frames replace the network's estimate of them (Eq. 6 of SDM). Networks of several seeds take
+// turns, sample by sample. The forecast is the mean of several samples, because the mean joint
+// error favours a mean; every other sample is of the mirrored group, for which the network's errors
+// differ. Recordings end before people stand still: after the length of the longest training
+// recording, the predicted motion fades until people rest. Where a pendulum predicts the hip, the
+// bodies are moved part of the way to it (`blend`). Finally each body is post-processed as restored
+// bodies are (postprocess.h): the jump at the last observed frame fades, bones keep their length of
+// frame 0, and resting feet stay in place.
 //
-// Noise belongs to people by their place, not by their number, so that their order changes nothing.
+// Noise is drawn in the order of people's places, so that the order of people does not matter.
 #pragma once
 
 #include <algorithm>
@@ -38,25 +39,25 @@ namespace pushid {
 //
 //   block(x)  = SiLU(conv3(FiLM(SiLU(conv3(x))))) + conv1(x)
 //   FiLM(y)   = y (1 + g) + b, [g, b] linear in SiLU(MLP(sines of t) + MLP(the person's statics))
-//   pooled(y) = [y, sums over the others of a y_other], of every level on the way down, in what the
-//               middle and the way up are given: all that people see of each other
+//   pooled(y) = [y, sums over the others of a y_other], y: each level's output on the way down, as
+//               input of the middle and of the way up; people see nothing else of each other
 //
-// Convolutions over time are causal (frames t-2, t-1, t), and so is the doubling, so that later
-// frames never change earlier ones and a motion may go on past the frames of the training.
-// People are a set: weights `a` depend on the two alone. Rejected: a column of all people's
-// features at once, which fixes their number.
+// Convolutions over time are causal (frames t-2, t-1, t), and so is the doubling of frames, so that
+// later frames never change earlier ones and a motion may be longer than those of the training.
+// People are a set: a weight `a` depends on the two people alone. Rejected: one column with the
+// features of all people, which fixes their number.
 
-// A group of people as the diffusion network sees them, and back.
+// The rows that the network reads and writes for a group of people.
 //
 //   motion    66 rows: hip(t) - hip(0), then (joint - hip)(t) - (joint - hip)(0), each over the
-//             joint's scale; no rotation is taken out: all face the way of the push
+//             joint's scale; rotations stay in, because all people face the way of the push;
 //             or, in people's own frames (SDM): hip(t) - hip(0), joint - hip turned to face +x, and
-//             cosine and sine of where they face, each to zero mean and unit variance
-//   given     a row of each: the observed motion (0 where nothing was seen), 1 where it was, the
-//             push on the group over 10 m of the pushed, and where physics have the hip
-//   statics   of a person: joints seen from the hip at frame 0, to half of unit variance, place
-//             seen from the pushed, height of the hip above 1 m, mass over 80 kg less 1, whether
-//             pushed, the push's impulse per mass, its length
+//             cosine and sine of the heading, each with zero mean and unit variance
+//   given     the observed motion (0 where nothing is observed), 1 in observed frames, and the push
+//             on the group over 10 N/kg
+//   statics   per person: joints relative to the hip at frame 0 (a spread of 1/2), place relative
+//             to the pushed person, height of the hip above 1 m, mass / 80 kg - 1, whether pushed,
+//             the push's impulse per mass, its duration
 //
 // Columns of motion and given: the frames of the first person, then those of the next.
 
@@ -67,7 +68,6 @@ inline constexpr int kStaticRows = kFirstPoseRows + 2 + 1 + 1 + 1 + kPushRows + 
 inline constexpr int kOwnFrameRows = kMotionRows + 2;
 inline int GivenRows(int motion_rows = kMotionRows) { return motion_rows + 1 + kPushRows; }
 
-// The frame of the motion's rows (above).
 enum class MotionFrame { kGroup, kOwn };
 constexpr EnumNames<MotionFrame, 2> Names(MotionFrame) {
   return {{{"group", MotionFrame::kGroup}, {"own", MotionFrame::kOwn}}};
@@ -91,7 +91,6 @@ struct MotionScales {
   bool own_frames() const { return mean.size() > 0; }
   int rows() const { return own_frames() ? kOwnFrameRows : kMotionRows; }
 };
-// Over all frames and people of the groups.
 MotionScales MotionScalesOf(const std::vector<std::vector<ObservedMotion>>& groups,
                             MotionFrame frame);
 
@@ -102,17 +101,16 @@ struct GroupFeatures {
   Eigen::Matrix2Xf places;  // m
 };
 
-// observed: the frames of each person that are shown, frames: of the whole motion. The push is that
-// of all people together.
+// observed: number of frames shown; frames: of the whole motion.
 GroupFeatures FeaturesOf(const std::vector<ObservedMotion>& group, const MotionScales& scales,
                          int observed, int frames, double dt);
 
 Eigen::MatrixXf MotionRows(const ObservedMotion& person, const MotionScales& scales);
-// The motion that begins as the person's does.
+// The inverse of MotionRows; hip(0) and the first pose are the person's.
 Trajectories FromMotionRows(const Eigen::MatrixXf& rows, const ObservedMotion& person,
                             const MotionScales& scales);
 
-// A group as it may as well have been: in the mirror, turned about z, of another size.
+// A change that makes another plausible group: mirrored, turned about z, scaled.
 struct GroupChange {
   bool mirrored = false;
   double turn = 0.0;  // rad
@@ -121,8 +119,8 @@ struct GroupChange {
 std::vector<ObservedMotion> Changed(const std::vector<ObservedMotion>& group,
                                     const GroupChange& change);
 
-// local      exp(-(d / 0.8 m)^2), those ahead and those behind apart (a logistic of dx / 0.1 m),
-//            each over their sum + 0.1; d, dx between the places at frame 0. Far people fade out.
+// local      exp(-(d / 0.8 m)^2), separately for people ahead and behind (a logistic of
+//            dx / 0.1 m), each over its sum + 0.1; d, dx: between the places at frame 0
 // none       people do not see each other
 // mean_all   the mean over everybody, oneself included (SDM)
 // heads      attention of four heads with values of their own, oneself included (SDM)
@@ -135,7 +133,7 @@ constexpr EnumNames<SocialPooling, 4> Names(SocialPooling) {
 }
 
 // The levels at which people see each other: in the middle and on the whole way up, or in the
-// middle alone, as SDM has it.
+// middle alone (SDM).
 enum class SocialJoin { kLevels, kBottleneck };
 constexpr EnumNames<SocialJoin, 2> Names(SocialJoin) {
   return {{{"levels", SocialJoin::kLevels}, {"bottleneck", SocialJoin::kBottleneck}}};
@@ -161,7 +159,7 @@ inline constexpr int kDownWidths[kDiffusionLevels] = {64, 64, 96, 96};
 inline constexpr int kTimeWidth = 64, kConditionWidth = 96;
 inline constexpr int kHeads = 4;  // of SocialPooling::kHeads
 inline constexpr int kTaps = 3;   // frames that a convolution sees
-// Channels in and out of a block.
+// Numbers of channels.
 struct BlockWidths {
   int in = 0, out = 0;
 };
@@ -185,18 +183,18 @@ struct DiffusionNetwork {
   MotionScales scales;
   DenseLayer first_time, second_time, first_static, second_static;
   std::vector<DiffusionBlock> blocks;
-  std::vector<DiffusionPool> pools;  // of the blocks after which people attend to each other
+  std::vector<DiffusionPool> pools;  // one for each block with AttendsAfter
   DenseLayer out, direct;
 };
 
-// Weights by which person i (a row) sees person j (a column), a matrix for each view; none of
-// attention.
+// Weights by which person i (row) sees person j (column), a matrix for each view; empty for kNone
+// and kHeads.
 std::vector<Eigen::MatrixXf> PoolingWeights(SocialPooling pooling, const Eigen::Matrix2Xf& places);
 
 // Sines and cosines of t at 32 frequencies.
 Eigen::VectorXf TimeFeatures(double t);
 
-// One group; what does not depend on t or x_t is computed once.
+// The network for one group; everything that does not depend on t or x_t is computed once.
 class GroupDenoiser {
  public:
   GroupDenoiser(const DiffusionNetwork& network, GroupFeatures features);
@@ -206,10 +204,10 @@ class GroupDenoiser {
  private:
   // Values are channels x (people * frames).
   int FramesOf(const Eigen::MatrixXf& values) const;
-  // conditions: of FiLM, a column per person.
+  // conditions: input of FiLM, a column per person.
   Eigen::MatrixXf Block(int index, const Eigen::MatrixXf& in,
                         const Eigen::MatrixXf& conditions) const;
-  // The values, and below them what people see of each other.
+  // The values, and below them the sums over the others.
   Eigen::MatrixXf Pooled(int index, const Eigen::MatrixXf& values) const;
   Eigen::MatrixXf Attended(const DiffusionPool& pool, const Eigen::MatrixXf& values) const;
   Eigen::MatrixXf Doubled(const Eigen::MatrixXf& values) const;
@@ -223,13 +221,14 @@ class GroupDenoiser {
 
 void ListTensors(const std::string& prefix, DiffusionNetwork* network, TensorFields* fields);
 
-// The share of a motion that is left after t of T steps of forward noise, and the way back.
+// Forward noise, and its removal.
 //
 //   x_t = sqrt(a_t) x_0 + sqrt(1 - a_t) e,  e ~ N(0, 1)
 //   a_t = f(t) / f(0),  f(t) = cos^2((t / T + s) / (1 + s) pi / 2)   the cosine schedule, s = 0.008
 //
-// The network estimates x_0 itself, and noise of an earlier time u is added to it anew (Eq. 5 of
-// SDM). Rejected: the posterior of x_u given x_t and x_0 (DDPM), which errs as much or more.
+// The network estimates x_0 itself, and fresh noise of an earlier time u is added to the estimate
+// (Eq. 5 of SDM). Rejected: the posterior of x_u given x_t and x_0 (DDPM), whose errors are the
+// same or larger.
 
 inline constexpr int kDiffusionTime = 1000;  // T
 
@@ -242,8 +241,7 @@ inline double SignalShare(double t) {
   return std::clamp(f(t) / f(0.0), 0.0, 1.0);
 }
 
-// Eq. 6 of SDM: frames that were seen take the place of what is estimated for them. past: every
-// person's MotionRows of these frames.
+// Eq. 6 of SDM: observed frames replace their estimates. past: each person's MotionRows of them.
 void PutPast(const std::vector<Eigen::MatrixXf>& past, Eigen::MatrixXf* estimate);
 
 // Eq. 5: x_u of an estimate of x_0.
@@ -253,20 +251,20 @@ Eigen::MatrixXf NoisedAgain(const Eigen::MatrixXf& estimate, const Eigen::Matrix
 struct DiffusionGeneratorOptions {
   int steps = 25;
   int averaged = 8;         // samples of a forecast
-  bool mirrored = true;     // every other one of them of the group in the mirror
-  int learnt_frames = 128;  // of the longest motion learnt from
-  bool settle = true;       // later ones fade; off: the network alone goes on, as in SDM
-  double settling = 0.5;    // s, in which steps of later frames fade to 1/e
+  bool mirrored = true;     // every other sample is of the mirrored group
+  int learnt_frames = 128;  // length of the longest training recording
+  bool settle = true;       // fade the motion after learnt_frames; false as in SDM
+  double settling = 0.5;    // s, in which later displacements fade to 1/e
   double blend = 0.0;       // share of the way to the pendulum's hip
   PostprocessOptions postprocess = {true, 20};
-  // Keeps what Forecast samples, for forecasts of the same people that differ by what is done to
-  // samples afterwards (blend, postprocess).
+  // Keeps the samples of Forecast, for further forecasts of the same people with another blend or
+  // post-processing.
   std::shared_ptr<std::vector<Trajectories>> sampled = nullptr;
 };
 
 class DiffusionGenerator : public MotionGenerator {
  public:
-  // noise: makes a source that begins anew, for forecasts that repeat themselves; dt: s.
+  // noise: makes a source that restarts its sequence, so that forecasts repeat; dt: s.
   DiffusionGenerator(ParticleLayout layout, std::vector<DiffusionNetwork> members, double dt,
                      const DiffusionGeneratorOptions& options, std::function<NormalSource()> noise);
 
@@ -275,16 +273,14 @@ class DiffusionGenerator : public MotionGenerator {
                                      int frames) const override;
 
  private:
-  // Everybody's motion, with what the network makes of the frames seen, before it is finished.
+  // One sample of everybody's whole motion, before post-processing.
   std::vector<Trajectories> SampleWhole(const std::vector<ObservedMotion>& people,
                                         const DiffusionNetwork& network, int frames,
                                         const NormalSource& normal) const;
-  // The mean of several.
   std::vector<Trajectories> SampledMean(const std::vector<ObservedMotion>& people,
                                         int frames) const;
-  // Networks take turns.
   const DiffusionNetwork& Member(int sample) const { return members_[sample % members_.size()]; }
-  // The frames after those seen.
+  // The post-processed frames after the observed ones.
   Trajectories Finished(const ObservedMotion& person, Trajectories motion) const;
 
   ParticleLayout layout_;

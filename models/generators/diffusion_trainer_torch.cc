@@ -1,5 +1,5 @@
-// models: the training of the diffusion network in LibTorch: sparse maps between rows, the network
-// as a module, batches of groups, and the trainer.
+// models: training of the diffusion network in LibTorch: sparse maps between rows, the network as a
+// module, batches of groups, and the trainer.
 #include <Eigen/SparseCore>
 #include <algorithm>
 
@@ -10,7 +10,7 @@
 namespace pushid {
 namespace {
 
-// A row of `sums` for every row that comes out: what it sums, with which weights. Filled row by
+// A sparse map of rows: `sums` has the weights of the input rows for each output row. Filled row by
 // row.
 struct RowMap : torch::CustomClassHolder {
   Eigen::SparseMatrix<float, Eigen::RowMajor> sums;
@@ -29,7 +29,7 @@ Eigen::Map<RowMajorMatrix> AsMatrix(const Tensor& rows) {
   return {rows.data_ptr<float>(), rows.size(0), rows.size(1)};
 }
 
-// [row, channel] to [row, channel].
+// Applies a RowMap to [row, channel].
 class MappedRows : public torch::autograd::Function<MappedRows> {
  public:
   static Tensor forward(torch::autograd::AutogradContext* context, const Tensor& x,
@@ -54,16 +54,14 @@ class MappedRows : public torch::autograd::Function<MappedRows> {
 
 Tensor Mapped(const Tensor& x, const RowMapPointer& map) { return MappedRows::apply(x, map); }
 
-// Sources of the rows of a level. Level l has every 2^l-th frame.
+// The row maps of a level. Level l has every 2^l-th frame.
 struct LevelMaps {
-  RowMapPointer taps;  // the three frames that a convolution sees, one after the other; from the
-                       // level above, with twice the frames
-  RowMapPointer
-      tapped;  // sums of three rows a frame, those that it adds to itself and the next two
-  RowMapPointer doubled;            // from the level below
-  RowMapPointer people;             // from a row for every person
-  RowMapPointer seen;               // of every view, one after the other
-  std::vector<int64_t> group_rows;  // rows of every group
+  RowMapPointer taps;               // input frames of a convolution with stride 2, level above
+  RowMapPointer tapped;             // sums of the three products of a convolution with stride 1
+  RowMapPointer doubled;            // from the level below, frames doubled
+  RowMapPointer people;             // from one row per person
+  RowMapPointer seen;               // sums over the others, one row per view
+  std::vector<int64_t> group_rows;  // number of rows of each group
 };
 
 struct DiffusionBatch {
@@ -80,7 +78,7 @@ struct DiffusionBatch {
 
 class DiffusionConvolution : public torch::nn::Module {
  public:
-  // halves: it takes every second frame, and is given rows that hold all it sees.
+  // halves: stride 2; its input rows hold all taps of a frame.
   DiffusionConvolution(int64_t inputs, int64_t outputs, int64_t taps, bool halves, double size)
       : taps_(taps), outputs_(outputs), halves_(halves) {
     const double bound = size / std::sqrt(static_cast<double>(inputs * taps));
@@ -118,7 +116,7 @@ class DiffusionModule : public torch::nn::Module {
     for (int b = 0; b < kDiffusionLevels; ++b) {
       if (structure.AttendsAfter(b)) AddPool(b);
     }
-    // It begins with the mean motion for everybody, not with noise to be unlearned.
+    // Zero weights: training begins with the mean motion instead of noise.
     out_ = Convolution("out", kTaps, false, kDownWidths[0], structure.NumMotion(), 0.0);
     direct_ = Convolution("direct", 1, false, structure.NumInputs(), structure.NumMotion(), 0.0);
   }
@@ -183,7 +181,7 @@ class DiffusionModule : public torch::nn::Module {
   struct Pool {
     ConvolutionPointer query, key, value, mixed;
   };
-  static constexpr double kSmallStart = 0.3;  // of what is added to a block's way around
+  static constexpr double kSmallStart = 0.3;  // initial size of a block's sum beside its skip
 
   torch::nn::Linear Linear(const std::string& name, int inputs, int outputs) {
     return register_module(name, torch::nn::Linear(inputs, outputs));
@@ -216,7 +214,7 @@ class DiffusionModule : public torch::nn::Module {
     pools_.push_back({layer("_query"), layer("_key"), layer("_value"), layer("_mixed")});
   }
 
-  // A block from its first convolution on; x: what came in, of the frames that go out.
+  // The rest of a block after its first convolution; x: the block's input at the output's frames.
   Tensor Finished(int b, const Tensor& first, const Tensor& x, const Tensor& conditions,
                   const LevelMaps& maps) {
     Block& block = blocks_[b];
@@ -242,7 +240,7 @@ class DiffusionModule : public torch::nn::Module {
     return torch::cat({y, torch::cat(seen, 0)}, 1);
   }
 
-  // A softmax over everybody, frame by frame.
+  // Attention over all people of a group, frame by frame.
   static Tensor Attended(const Pool& pool, const Tensor& y, int64_t people) {
     const int64_t width = y.size(1);
     // [frame, head, person, channel]
@@ -277,7 +275,7 @@ size_t Pick(size_t count) {
   return static_cast<size_t>(torch::randint(static_cast<int64_t>(count), {1}).item<int64_t>());
 }
 
-// Frames that a group is shown.
+// The number of observed frames, drawn.
 int DrawnPast(int frames) {
   const double drawn = Uniform(0.0, 1.0);
   int past = 1;
@@ -297,7 +295,7 @@ int64_t RowsOf(const DiffusionBatch& batch, const std::vector<int64_t>& frames) 
   return rows;
 }
 
-// above, frames, below: of every group at the level before, at this one and at the next.
+// above, frames, below: each group's number of frames at the previous, this and the next level.
 LevelMaps MapsOf(const DiffusionBatch& batch, const std::vector<int64_t>& above,
                  const std::vector<int64_t>& frames, const std::vector<int64_t>& below) {
   const auto map = [](int64_t out, int64_t in) { return c10::make_intrusive<RowMap>(out, in); };
@@ -362,7 +360,6 @@ DiffusionBatch WithoutMaps(const GroupFeatures& features, const DiffusionStructu
   return batch;
 }
 
-// Groups of one batch.
 DiffusionBatch Joined(const std::vector<ObservedGroup>& groups, const std::vector<int>& past,
                       const MotionScales& scales, const DiffusionTrainingOptions& options) {
   std::vector<Tensor> truth, given, weights, step_weights, statics;
@@ -390,7 +387,6 @@ DiffusionBatch Joined(const std::vector<ObservedGroup>& groups, const std::vecto
   return all;
 }
 
-// Groups to learn from.
 class DiffusionBatches {
  public:
   DiffusionBatches(const std::vector<ObservedGroup>& groups, const MotionScales& scales,
@@ -403,7 +399,7 @@ class DiffusionBatches {
 
   bool empty() const { return groups_.empty() && alone_.empty(); }
 
-  // The batch of a training step, with all that is random in it.
+  // The random batch of a training step.
   DiffusionBatch Draw(int step) const {
     const bool of_groups = alone_.empty() || (!groups_.empty() && step % kAloneEvery != 0);
     const std::vector<ObservedGroup>& from = of_groups ? groups_ : alone_;
@@ -416,7 +412,7 @@ class DiffusionBatches {
     return Joined(drawn, past, scales_, options_);
   }
 
-  // The batch of these groups as recorded, the first frame shown; at most `most`.
+  // At most `most` groups as recorded, with one observed frame.
   DiffusionBatch AsTheyAre(int most) const {
     std::vector<ObservedGroup> all = groups_;
     all.insert(all.end(), alone_.begin(), alone_.end());
@@ -444,7 +440,7 @@ class DiffusionBatches {
       person.controls = {};
       const double way = Uniform(kNearestBystander, kFarthestBystander);
       const double angle = Uniform(-M_PI, M_PI);
-      // Seen from the outermost in that direction, so that nobody is nearer.
+      // The distance counts from the outermost person in that direction.
       const Eigen::Vector2f direction(static_cast<float>(std::cos(angle)),
                                       static_cast<float>(std::sin(angle)));
       float outermost = -1e9f;
@@ -476,7 +472,7 @@ double RateShareToFloor(int step, int steps, int warm_up) {
   return kRateFloor + (1.0 - kRateFloor) * 0.5 * (1.0 + std::cos(M_PI * down));
 }
 
-// x_t, whose signal has the share a of [row, 1].
+// x_t with the signal's share `a`, [row, 1].
 Tensor Noised(const Tensor& truth, const Tensor& a, const Tensor& noise) {
   return a.sqrt() * truth + (1.0 - a).sqrt() * noise;
 }
@@ -511,7 +507,7 @@ struct DiffusionTraining : StepsTraining<DiffusionTrainer> {
   std::shared_ptr<DiffusionModule> module, mean;  // mean: of the weights
   std::unique_ptr<AdamW> optimizer;
 
-  // times: of the groups, whose people are at the same stage of the way back.
+  // times: one per group.
   Tensor EstimateBy(DiffusionModule* of, const Tensor& noisy, const std::vector<double>& times,
                     const DiffusionBatch& batch) const {
     std::vector<Tensor> features;
@@ -529,7 +525,7 @@ struct DiffusionTraining : StepsTraining<DiffusionTrainer> {
     return torch::cat(shares);
   }
 
-  // Distances of joints in m: a hip that is off takes all joints along.
+  // Mean joint distance, m; an error of the hip moves all joints.
   Tensor JointError(const Tensor& miss) const {
     constexpr double kSmooth = 1e-12;  // m^2; a root has no derivative at 0
     const Tensor squares = torch::mm(miss, joints_of_rows).square();
@@ -568,7 +564,7 @@ struct DiffusionTraining : StepsTraining<DiffusionTrainer> {
     return loss.item<double>();
   }
 
-  // Early means forget faster: they would keep the random start.
+  // Early averages forget faster; otherwise they would keep the random initial weights.
   void Average() {
     torch::NoGradGuard no_grad;
     const double keep = std::min(options.averaging, (1.0 + step) / (10.0 + step));
@@ -577,7 +573,7 @@ struct DiffusionTraining : StepsTraining<DiffusionTrainer> {
     for (size_t i = 0; i < now.size(); ++i) means[i].mul_(keep).add_(now[i], 1.0 - keep);
   }
 
-  // The loss of an estimate from nothing but noise, the first frame and the push.
+  // The loss of an estimate from nearly pure noise, the first frame and the push.
   double HeldLoss(int) override {
     if (held_batches.empty()) return std::nan("");
     torch::NoGradGuard no_grad;

@@ -1,11 +1,11 @@
-// models: learned generators of motion: from what was seen of people to what they do next.
+// models: learned generators of motion, which continue the observed motion of people.
 //
 //   std::vector<Trajectories> next = generator.Forecast(people, 25);
 //   auto futures = generator.Sample(people, 25, 20, normal);   // 20 futures of each person
 //
-// All people of a call have been seen for the same number of frames. A kind that lets people see
-// each other takes those of one call for a group; particles do not see each other, so that any
-// windows may be forecast together, which is faster.
+// All people of one call have the same number of observed frames. A kind whose people interact
+// treats the people of one call as a group. Particles do not interact, so any windows may be
+// forecast in one call, which is faster.
 #pragma once
 
 #include <vector>
@@ -15,14 +15,14 @@
 
 namespace pushid {
 
-// The seen motion of a person, and what acts on them.
+// The observed motion of a person, and the push that acts on them.
 struct ObservedMotion {
   Trajectories frames;
   Eigen::MatrixXf controls = {};  // a column per frame, observed and to come; or empty
-  // For people who see each other, and for physics beside them.
+  // Used only by kinds whose people interact, and for blending with physics.
   Eigen::Vector2f place = Eigen::Vector2f::Zero();  // of the frames' origin, m, world
   float mass = 0.0f;                                // kg
-  Eigen::MatrixXf pendulum = {};  // where physics have the hip, as in frames; or empty
+  Eigen::MatrixXf pendulum = {};  // the hip as predicted by physics, rows as in frames; or empty
 };
 
 struct SampledFuture {
@@ -36,7 +36,7 @@ class MotionGenerator {
   virtual const ParticleLayout& layout() const = 0;
   virtual std::vector<Trajectories> Forecast(const std::vector<ObservedMotion>& people,
                                              int frames) const = 0;
-  // [person][future]; nobody's where a kind samples none.
+  // Sampled futures, [person][future]; empty for kinds that do not sample.
   virtual std::vector<std::vector<SampledFuture>> Sample(
       const std::vector<ObservedMotion>& /*people*/, int /*frames*/, int /*count*/,
       const NormalSource& /*normal*/) const {

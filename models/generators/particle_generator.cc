@@ -1,4 +1,4 @@
-// models: particles averaged and blended, and the siMLPe that they are blended with.
+// models: particle networks, the ridge and siMLPe, and their blend.
 #include "models/generators/particle_generator.h"
 
 #include <Eigen/Core>
@@ -31,7 +31,7 @@ Eigen::VectorXf Features(const Trajectories& motion, Eigen::Index last) {
   return features;
 }
 
-// Each column to mean 0 and variance 1, then by row.
+// Layer norm: each column to mean 0 and variance 1, then scale and shift by row.
 Eigen::MatrixXf Normed(const Eigen::MatrixXf& values, const SimlpeBlock& block) {
   Eigen::MatrixXf normed = values.rowwise() - values.colwise().mean();
   const Eigen::RowVectorXf variance = normed.array().square().colwise().mean();
@@ -234,7 +234,7 @@ void ParticleGenerator::Blend(const std::vector<ObservedMotion>& people,
   const Eigen::Index frames = motions->front().cols();
   const Eigen::ArrayXf fading =
       (-Eigen::ArrayXf::LinSpaced(frames, 1.0f, static_cast<float>(frames)) / kBlendFrames).exp();
-  // A share of the partner for every frame, and the rest of what was there.
+  // Moves a forecast towards its partner, by a share for each frame.
   const auto blend = [](const Eigen::ArrayXf& share, const Trajectories& partner,
                         const Trajectories& members, Trajectories* motion) {
     *motion += (partner - members) * share.matrix().asDiagonal();
@@ -298,7 +298,7 @@ std::vector<std::vector<SampledFuture>> ParticleGenerator::Sample(
       }
       const Eigen::MatrixXf& poses = rollout.Step(goes_in ? nullptr : &noise);
       if (!goes_in) {
-        // Beside the likelihood that white noise of these values would have.
+        // The density of correlated noise, relative to white noise of the same values.
         Eigen::VectorXf change =
             0.5f * (noise.colwise().squaredNorm() - fresh.colwise().squaredNorm()).transpose();
         change.array() -= static_cast<float>(noise.rows()) * std::log(fresh_share);

@@ -1,5 +1,5 @@
-// models: the particles' network as a LibTorch module, its windows and its losses. Included by
-// *_torch.cc files alone.
+// models: the particle network as a LibTorch module, and its losses. Included by *_torch.cc files
+// alone.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -9,7 +9,7 @@
 
 namespace pushid {
 
-// Windows to learn from are tensors of [batch, frame, coordinate].
+// Training windows are tensors [batch, frame, coordinate].
 
 // sum_j g^ij w^j of `draws` w. log_noise: log g^ii. below: NoiseBelow.
 inline Tensor MappedNoise(const Tensor& log_noise, const Tensor& below, const Tensor& draws) {
@@ -18,7 +18,7 @@ inline Tensor MappedNoise(const Tensor& log_noise, const Tensor& below, const Te
   return own + torch::matmul(below.tril(-1), draws.unsqueeze(-1)).squeeze(-1);
 }
 
-// The loss of transitions, by coordinate (NoiseLoss): `misses` of the drift, p - f; drawn: w.
+// The loss of transitions by coordinate (NoiseLoss). misses: errors of the drift, p - f; drawn: w.
 inline Tensor TransitionLoss(NoiseLoss loss, const Tensor& misses, const Tensor& log_noise,
                              const Tensor& below, const Tensor& drawn) {
   if (loss == NoiseLoss::kDrawn) return (misses - MappedNoise(log_noise, below, drawn)).square();
@@ -85,9 +85,8 @@ class ParticleModule : public torch::nn::Module {
     return {noise_, noise_bias_, noise_below_->weight, noise_below_->bias};
   }
 
-  // Frames forecast after the first `observed`, [batch, frame, coordinate]. jitter: [batch, 1,
-  // coordinate], in spreads. noise: w_1:K of noisy_input, [batch, frame, coordinate]; undefined:
-  // none goes in.
+  // The forecast after the first `observed` frames, [batch, frame, coordinate]. jitter: [batch, 1,
+  // coordinate], in spreads. noise: w_1:K of noisy_input, [batch, frame, coordinate]; undefined: 0.
   Tensor Forecast(const Tensor& batch, const Tensor& jitter, int observed, int predicted,
                   const Tensor& noise = {}) const {
     const Tensor past = batch.narrow(1, 0, observed);
@@ -113,8 +112,8 @@ class ParticleModule : public torch::nn::Module {
     return torch::stack(poses, 1) + correction;
   }
 
-  // What the drift misses on the true motion, e = p_{t+1} - f, and the hidden states, for t from
-  // `first` - 1 on. drift_learns: off: no gradients reach the drift and the cell.
+  // The drift's errors on the true motion, e = p_{t+1} - f, and the hidden states, for t from
+  // `first` - 1 on. drift_learns: gradients reach the drift and the cell.
   std::pair<Tensor, Tensor> Misses(const Tensor& batch, const Tensor& jitter, int first,
                                    bool drift_learns = false) const {
     torch::AutoGradMode gradients(drift_learns && torch::GradMode::is_enabled());
@@ -137,8 +136,8 @@ class ParticleModule : public torch::nn::Module {
                         kLargestLogNoise);
   }
 
-  // g^ij of states, of which only those below the diagonal are meant, [.., i, j]; undefined where g
-  // is diagonal.
+  // g^ij, [.., i, j], of which only the part below the diagonal is used; undefined if g is
+  // diagonal.
   Tensor NoiseBelow(const Tensor& hidden) const {
     if (!structure_.noisy_input) return {};
     std::vector<int64_t> shape = hidden.sizes().vec();
@@ -146,8 +145,8 @@ class ParticleModule : public torch::nn::Module {
     return torch::linear(hidden, noise_below_->weight, noise_below_->bias).reshape(shape);
   }
 
-  // scatter: of misses over their noise, summed over frames; its correlations become those of the
-  // noise.
+  // Sets the correlations of the noise to those of `scatter`, the sum over frames of e e^T, e: the
+  // drift's errors over g.
   void SetScatter(const Eigen::MatrixXd& scatter) {
     const Eigen::VectorXd scale = scatter.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
     Eigen::MatrixXd correlations =
@@ -176,13 +175,13 @@ class ParticleModule : public torch::nn::Module {
   }
 
  private:
-  // p_t of every frame; the first has none.
+  // p_t of every frame; 0 at the first.
   Tensor Steps(const Tensor& frames) const {
     const int64_t count = frames.size(1);
     const Tensor moved = (frames.narrow(1, 1, count - 1) - frames.narrow(1, 0, count - 1));
     return torch::cat({torch::zeros_like(frames.narrow(1, 0, 1)), moved / step_spread_}, 1);
   }
-  // The last nine before frame `end`, newest first, as far as there are any.
+  // The last nine displacements before frame `end`, newest first; 0 before frame 0.
   Tensor LastSteps(const Tensor& steps, int64_t end) const {
     std::vector<Tensor> last;
     for (int64_t k = 1; k <= kSkipSteps; ++k) {
@@ -191,14 +190,15 @@ class ParticleModule : public torch::nn::Module {
     }
     return torch::cat(last, 1);
   }
-  // Inputs of all frames, or of one.
+  // Works on all frames, or on one.
   Tensor Inputs(const Tensor& steps, const Tensor& frames, const Tensor& jitter) const {
     std::vector<Tensor> parts;
     if (structure_.particles) parts.push_back(steps);
     if (structure_.poses) parts.push_back((frames - pose_mean_) / pose_spread_ + jitter);
     return torch::cat(parts, -1);
   }
-  // Correction of all forecast frames, [batch, frame, coordinate]; hidden: after the last seen one.
+  // The correction of all forecast frames, [batch, frame, coordinate]; hidden: after the last
+  // observed frame.
   Tensor Correction(const Tensor& past, const Tensor& hidden, const Tensor& jitter,
                     int predicted) const {
     if (structure_.corrected_frames == 0) return torch::zeros({1});
@@ -228,7 +228,7 @@ class ParticleModule : public torch::nn::Module {
                                                    recurrent_, input_bias_, recurrent_bias_);
     return {hidden, memory};
   }
-  // The cell over all frames: all hidden states, and the last state. noise: as in Forecast.
+  // Runs the cell over all frames: all hidden states, and the last state. noise: as in Forecast.
   std::pair<Tensor, CellState> Run(const Tensor& inputs, const Tensor& noise = {}) const {
     const Tensor zero = torch::zeros({inputs.size(0), kParticleHidden});
     if (!structure_.lstm && !noise.defined()) {
@@ -258,10 +258,10 @@ class ParticleModule : public torch::nn::Module {
   Tensor noise_, noise_bias_, noise_mix_;
   torch::nn::Linear noise_below_{nullptr};
   torch::nn::Linear correction_hidden_{nullptr}, correction_{nullptr};
-  Tensor sines_;  // of the correction, a row a frame
+  Tensor sines_;  // of the correction, a row per frame
 };
 
-// The losses of forecasts of particles.
+// The losses of forecasts.
 class ParticleLosses {
  public:
   ParticleLosses(const ParticleLayout& layout, const ParticleTrainingOptions& options)
@@ -287,7 +287,7 @@ class ParticleLosses {
     }
   }
 
-  // The loss of forecasts, [batch, frame, coordinate], against the windows they belong to; m.
+  // forecast: [batch, frame, coordinate], m; batch: the windows.
   Tensor operator()(const Tensor& forecast, const Tensor& batch) const {
     const Tensor truth = batch.narrow(1, options_.observed, options_.predicted);
     const Tensor share = frames_ * torch::ones({batch.size(0), options_.predicted});
@@ -331,8 +331,9 @@ class ParticleLosses {
   Tensor weights_, frames_, parents_, has_bone_, fixed_, is_fixed_;
 };
 
-// A Wasserstein critic of whole forecasts (SDE's Eq. 12) on what moves from the last observed frame
-// on, in the pose's spreads: three fully connected layers, two of 256 and the third to the score.
+// A Wasserstein critic of whole forecasts (SDE's Eq. 12). Its input are the displacements since the
+// last observed frame, in spreads of the pose: two fully connected layers of 256, and a third for
+// the score.
 class ParticleCritic : public torch::nn::Module {
  public:
   ParticleCritic(int64_t inputs, Tensor spread) : spread_(std::move(spread)) {
@@ -346,8 +347,8 @@ class ParticleCritic : public torch::nn::Module {
   }
   Tensor Score(const Tensor& features) { return layers_->forward(features).mean(); }
 
-  // The critic's own loss: forecasts below truths, with a slope of 1 in between, where `share` of
-  // the way from forecast to truth is gone, [batch, 1].
+  // The critic's own loss: the score of forecasts minus that of truths, with a penalty for slopes
+  // other than 1 at `share`, [batch, 1], of the way from forecast to truth.
   Tensor Loss(const Tensor& forecast, const Tensor& truth, const Tensor& share) {
     const Tensor between = (share * truth + (1.0 - share) * forecast).detach().requires_grad_(true);
     const Tensor slope =

@@ -6,7 +6,7 @@
 namespace pushid {
 namespace {
 
-// Windows to learn from, drawn by group, window and side.
+// Training windows, drawn by group, window and side (mirrored or not).
 class ParticleWindows {
  public:
   ParticleWindows(const ParticleLayout& layout, const std::vector<LearntParticles>& motions,
@@ -56,7 +56,7 @@ class ParticleWindows {
     return Gather(places);
   }
 
-  // At most `most` of all windows, evenly taken, none in the mirror.
+  // At most `most` windows, evenly spaced, none of them mirrored.
   Tensor Some(int most) const {
     const size_t step = std::max<size_t>(1, all_.size() / static_cast<size_t>(most));
     std::vector<int64_t> places;
@@ -73,23 +73,23 @@ class ParticleWindows {
   }
 
   const ParticleTrainingOptions& options_;
-  Tensor frames_;              // of all motions below one another, then of all mirrored
-  int64_t mirrored_rows_ = 0;  // where the mirrored begin
-  std::vector<int64_t> all_;   // the rows where windows begin
+  Tensor frames_;              // of all motions, then of all mirrored motions
+  int64_t mirrored_rows_ = 0;  // number of rows before the mirrored motions
+  std::vector<int64_t> all_;   // first rows of the windows
   std::vector<std::vector<int64_t>> by_group_;
-  std::vector<double> group_share_;  // summed up
+  std::vector<double> group_share_;  // cumulative
 };
 
 constexpr double kLossUnits = 1e3;  // the gradient is clipped with the loss in mm
 
-// Share of the largest rate: up in a straight line, then down to nothing by a cosine.
+// The learning rate as a share of the largest: a linear warm-up, then a cosine down to zero.
 double RateShareToZero(int step, int steps, int warm_up) {
   const int up = std::min(warm_up, std::max(1, steps / 2));
   if (step < up) return (step + 1.0) / up;
   return 0.5 * (1.0 + std::cos(M_PI * (step - up) / std::max(1, steps - up)));
 }
 
-// A training on windows: of particles, and of siMLPe.
+// The common part of the trainings of particles and siMLPe.
 template <typename Interface, typename Options>
 struct WindowsTraining : StepsTraining<Interface> {
   WindowsTraining(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
@@ -146,7 +146,7 @@ ParticleNetwork ParticleStatistics(const ParticleLayout& layout,
   return network;
 }
 
-constexpr int kScatterBatches = 32;  // thousands of windows for the correlations of the noise
+constexpr int kScatterBatches = 32;  // for the correlations of the noise
 
 Tensor NoJitter(const Tensor& batch) { return torch::zeros({batch.size(0), 1, batch.size(2)}); }
 
@@ -247,9 +247,9 @@ struct ParticleTraining : WindowsTraining<ParticleTrainer, ParticleTrainingOptio
 
   double Step() override { return InDrift(step) ? DriftStep() : NoiseStep(); }
 
-  // The correlations of the noise: of what the drift misses, on windows drawn as in training.
+  // Sets the correlations of the noise from the drift's errors, on windows drawn as in training.
   void Finish() override {
-    if (AllSteps() == options.steps) return;  // no noise was learned by itself
+    if (AllSteps() == options.steps) return;  // no separate training of the noise
     torch::NoGradGuard no_grad;
     const int first = std::min(kFirstNoiseStep, options.observed);
     Eigen::MatrixXd scatter =
@@ -281,7 +281,7 @@ struct ParticleTraining : WindowsTraining<ParticleTrainer, ParticleTrainingOptio
   }
 };
 
-// Coefficients stand first, [coefficient, batch, coordinate]: a block is then one product.
+// State tensors are [coefficient, batch, coordinate], so that a block is one product.
 class SimlpeModule : public torch::nn::Module {
  public:
   SimlpeModule(const ParticleNetwork& statistics, int observed, int blocks)
@@ -304,7 +304,7 @@ class SimlpeModule : public torch::nn::Module {
     }
   }
 
-  // past: [batch, frame, coordinate], and so is the forecast. jitter: [batch, 1, coordinate].
+  // past and the forecast: [batch, frame, coordinate]; jitter: [batch, 1, coordinate].
   Tensor Forecast(const Tensor& past, const Tensor& jitter) {
     const int64_t batch = past.size(0);
     const Tensor poses = (past - pose_mean_) / pose_spread_ + jitter;
@@ -329,7 +329,7 @@ class SimlpeModule : public torch::nn::Module {
   }
 
  private:
-  static constexpr double kSmallGain = 1e-2;  // the first forecast stands nearly still
+  static constexpr double kSmallGain = 1e-2;  // initial forecasts hardly move
 
   int64_t size_, observed_;
   Tensor pose_mean_, pose_spread_, transform_;

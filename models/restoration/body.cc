@@ -10,7 +10,7 @@
 namespace pushid {
 namespace {
 
-// A stretched knee has no direction to bend in, hence never quite stretched.
+// A fully stretched knee has no direction to bend in.
 constexpr double kMostStretched = 0.9995;
 constexpr double kStraight = 1e-4;  // m
 
@@ -105,11 +105,10 @@ double ReachWithLeg(bool left, const Eigen::Vector3d& target, Pose* pose) {
   along /= distance;
   distance = std::clamp(distance, std::abs(thigh - shank) * 1.001 + 1e-6,
                         kMostStretched * (thigh + shank));
-  // Law of cosines: how far along the line, and how far beside it, the knee stands.
+  // The law of cosines gives the knee's place along the line from hip to target, and beside it.
   const double foot = (thigh * thigh + distance * distance - shank * shank) / (2.0 * distance);
   const double beside = std::sqrt(std::max(0.0, thigh * thigh - foot * foot));
-  // The knee bends to the side it bent to, carried along with the leg; a straight leg bends towards
-  // the toe.
+  // The knee keeps its side, turned with the leg; a straight leg bends towards the toe.
   const Eigen::Vector3d was = (a - h).normalized();
   Eigen::Vector3d bend = (k - h) - was.dot(k - h) * was;
   if (!(bend.norm() > kStraight)) bend = pose->col(toe) - a;

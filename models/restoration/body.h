@@ -1,4 +1,4 @@
-// models: the body that a restoration poses: 22 joints in the order of the published recordings.
+// models: the body of restorations: 22 joints in the order of the published recordings.
 //
 //   0 hip; 1-3 spine; 4 neck; 5 head; 6-9 right clavicle, shoulder, elbow, wrist; 10-13 left;
 //   14-17 right hip, knee, ankle, toe; 18-21 left. Every parent precedes its children.
@@ -56,11 +56,10 @@ Eigen::Matrix<double, kBodyJoints, 1> BoneLengths(const Pose& pose);
 // Thigh and shank, mean of both legs, m.
 double LegLength(const Pose& pose);
 
-// Angle about z of where the body faces: square to the lines between the hip joints and between
-// the shoulders; 0 is +x. Zero for a body without width.
+// The angle about z of the direction that the body faces, perpendicular to the lines between the
+// hip joints and between the shoulders; 0 is +x. Zero for a body without width.
 double Heading(const Pose& pose);
 
-// (x, y) turned about z by an angle.
 inline Eigen::Matrix3d TurnAboutZ(double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   Eigen::Matrix3d turn;
@@ -68,39 +67,37 @@ inline Eigen::Matrix3d TurnAboutZ(double angle) {
   return turn;
 }
 
-// Rotations, and the six numbers that networks describe them by.
-//
-// The first two columns, one after the other (Zhou et al., On the continuity of rotation
-// representations in neural networks, CVPR 2019): unlike angles or quaternions without jumps.
+// A rotation as networks represent it: its first two columns (Zhou et al., On the continuity of
+// rotation representations in neural networks, CVPR 2019), which are continuous, unlike angles or
+// quaternions.
 using Rotation6d = Eigen::Matrix<double, 6, 1>;
 Rotation6d ToRotation6d(const Eigen::Matrix3d& rotation);
 
-// The smallest rotation that turns direction `from` into direction `to`; the identity where one of
-// them has no length. Opposite directions turn about any axis square to them.
+// The smallest rotation from direction `from` to direction `to`; the identity if one of them has no
+// length. For opposite directions the axis is any perpendicular one.
 Eigen::Matrix3d SwingBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 // argmin over R of sum |R from_i - to_i|^2 (Kabsch), a proper rotation.
 Eigen::Matrix3d FitRotation(const std::vector<Eigen::Vector3d>& from,
                             const std::vector<Eigen::Vector3d>& to);
 
-// A wanted pose carried out by a person's own skeleton, so that every bone keeps its length.
+// A wanted pose transferred to a person's own skeleton, so that every bone keeps its length.
 //
-// The skeleton is the person's pose at frame 0: there all rotations are the identity and the
-// offsets are the differences of the joints. From the hip outwards each joint turns so that its
-// children come as near as they can to where they are wanted: one child by the smallest swing that
-// points at it, several (hip, chest) by the best rigid fit. Positions then are those of forward
-// kinematics, and a BVH file holds them exactly. Rejected: scaling each bone along its wanted
-// direction. It keeps lengths too, but tears pelvis and shoulders out of shape, and no hierarchy of
-// rotations can hold the result.
+// The skeleton is the person's pose at frame 0, where all rotations are the identity and the
+// offsets are the differences of the joints. From the hip outwards, each joint turns so that its
+// children come as near as possible to their wanted places: one child by the smallest swing that
+// points at it, several (hip, chest) by the best rigid fit. The positions are then those of forward
+// kinematics, and a BVH file represents them exactly. Rejected: scaling each bone along its wanted
+// direction, which keeps lengths too but distorts pelvis and shoulders, and is no hierarchy of
+// rotations.
 struct FittedTree {
   Eigen::Matrix3Xd positions;
   std::vector<Eigen::Matrix3d> rotations;  // world, against the rest pose
 };
 FittedTree FitSkeleton(const Pose& rest, const Pose& wanted);
 
-// Aims of any tree of joints, a column each. Every parent precedes its children, -1 is a
-// root, which goes where it is wanted; a joint turns towards its `aims`, joints further out, and
-// without any it goes with its parent.
+// Any tree of joints. Parents precede their children; -1: a root, which moves to its wanted place.
+// A joint turns towards its `aims` (joints further out), or with its parent if it has none.
 struct JointAims {
   std::vector<int> parents;
   std::vector<std::vector<int>> aims;
@@ -108,9 +105,9 @@ struct JointAims {
 FittedTree FitTree(const JointAims& tree, const Eigen::Matrix3Xd& rest,
                    const Eigen::Matrix3Xd& wanted);
 
-// Both bones of a leg turned so that the ankle reaches `target`, or comes as near as the leg is
-// long; the knee stays in its plane, the toe keeps its place relative to the ankle. Returns how far
-// the ankle stays from the target, m.
+// Turns both bones of a leg so that the ankle reaches `target`, or comes as near as the leg's
+// length allows; the knee stays in its plane, and the toe keeps its place relative to the ankle.
+// Returns the remaining distance between ankle and target, m.
 double ReachWithLeg(bool left, const Eigen::Vector3d& target, Pose* pose);
 
 }  // namespace pushid

@@ -1,5 +1,4 @@
-// models: LDP's chain in LibTorch: its modules, and what their training minimizes. Included by
-// *_torch.cc files alone.
+// models: LDP's chain in LibTorch: modules and losses. Included by *_torch.cc files alone.
 #pragma once
 
 #include <algorithm>
@@ -13,22 +12,22 @@
 
 namespace pushid {
 
-// The foot-skate error (FSE) that the lower sampler is trained against.
+// The foot-skate error (FSE), a loss of the lower sampler.
 //
 //   FSE = mean over ankles with h < H of  100 |way| (2 - 2^(max(0, h) / H)),  cm a frame
 //
-// way: of the ankle, horizontal, from the frame that the network started from to its output, m;
-// h: the output's ankle above its own height at frame 0 of the person; H = 0.025 m. The same as
-// FootSkate of ident/bodies/body_evaluation.cc. h counts in the weight and its gradient; which
-// ankles count has no gradient. 0 where no ankle is low.
+// way: horizontal displacement of the ankle from the input frame to the output, m; h: height of the
+// output's ankle above its height at frame 0; H = 0.025 m. The same as FootSkate of
+// ident/bodies/body_evaluation.cc. The selection of low ankles has no gradient. 0 if no ankle is
+// low.
 //
-// In `ldp` coordinates positions contain the hip's way. In `tip` coordinates they do not: the hip
-// is put at the end of the rod, so the way and the rise of that end are added (PendulumFrames).
+// In `tip` coordinates positions are relative to the hip, which is at the end of the rod, so the
+// displacement and the rise of that end are added (PendulumFrames).
 
-// Not scaled, as FramesOf and PendulumFrames give them; a row per sample.
+// Rows of FramesOf and PendulumFrames, not scaled; a row per sample.
 struct SkateTensors {
-  Tensor output, before, first;     // of the lower body: output, started from, frame 0
-  Tensor pendulum, first_pendulum;  // of the output's frame and of frame 0
+  Tensor output, before, first;     // frames of the lower body: output, input, frame 0
+  Tensor pendulum, first_pendulum;  // at the output's frame and at frame 0
 };
 
 inline Tensor FootSkateOf(const CvaeLayout& layout, const SkateTensors& frames) {
@@ -80,7 +79,7 @@ inline Tensor SamplerLossOf(CvaeTraining training, const Gaussian& sampled,
   return of_mean.mean() + (sampled.log_variance - encoded.log_variance).pow(2).mean();
 }
 
-// done: share of the stage's steps.
+// done: share of the stage's steps, 0 .. 1.
 inline double CvaeLearningRate(const CvaeOptions& options, bool sampler, double done) {
   constexpr double kFirst = 1e-4, kLast = 1e-7;
   if (options.training == CvaeTraining::kOwn) return options.learning_rate * OneCycle(done);

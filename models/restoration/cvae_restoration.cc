@@ -17,7 +17,7 @@ Eigen::Vector3d OriginOf(const RestorationInput& person, const Pose& pose,
 
 double Wrapped(double angle) { return std::remainder(angle, 2.0 * M_PI); }
 
-// `frames` values at dt, by linear interpolation between values at from_dt; the last goes on.
+// `frames` values at dt, by linear interpolation of values at from_dt.
 template <typename Value>
 std::vector<Value> ResampledPath(const std::vector<Value>& values, double from_dt, double dt,
                                  int frames) {
@@ -40,7 +40,6 @@ Eigen::MatrixXf Blend(const DenseLayer& experts, const Eigen::MatrixXf& inputs,
   return mixed;
 }
 
-// e^x over the sum, column by column.
 Eigen::MatrixXf Softmax(const Eigen::MatrixXf& values) {
   Eigen::MatrixXf shares = values.rowwise() - values.colwise().maxCoeff();
   shares = shares.array().exp();

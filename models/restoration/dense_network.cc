@@ -7,7 +7,7 @@
 
 namespace pushid {
 
-// The product is made of tiles of 16 rows and 6 columns, whose sums stay in registers.
+// The product is computed in tiles of 16 rows and 6 columns, whose sums stay in registers.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 namespace {
 

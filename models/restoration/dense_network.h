@@ -1,7 +1,7 @@
 // models: a fully connected network of single-precision weights, evaluated for many inputs at once:
 // y = W_L e(... e(W_1 x + b_1) ...) + b_L, e = ELU (exp(x) - 1 below zero) or max(0, .).
-// Apart from learned_terms.h, which is in double precision and has derivatives: a restoration has
-// neither need, but poses whole crowds.
+// learned_terms.h has networks of double precision with derivatives; a restoration needs neither,
+// but has to be fast for crowds.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,11 +10,10 @@
 
 namespace pushid {
 
-// a b, which is what networks do nearly all of the time. Releases are built for any x86-64, where
-// Eigen's own products have 128-bit vectors and no fused multiply-add; this loop is compiled for
-// the wider ones too, and the processor chooses. Another width rounds otherwise: results repeat bit
-// by bit on one machine, and to rounding across. residuals/kernels/vector_kernels.h has the like
-// for doubles, and what was rejected.
+// The product a b, which takes nearly all of a network's time. Releases are built for any x86-64,
+// where Eigen's products have 128-bit vectors and no fused multiply-add; this loop is also compiled
+// for wider vectors, and the processor at hand chooses. Rounding depends on the width: results
+// repeat to the bit on one machine, and to rounding across machines.
 Eigen::MatrixXf FloatProduct(const Eigen::MatrixXf& a, const Eigen::MatrixXf& b);
 
 struct DenseLayer {
@@ -22,14 +21,13 @@ struct DenseLayer {
   Eigen::VectorXf bias;
 };
 
-// A column per sample.
+// weights * values + bias; a column per sample.
 Eigen::MatrixXf Applied(const DenseLayer& layer, const Eigen::MatrixXf& values);
-// Applied by Eigen's own product, which rounds otherwise.
+// The same by Eigen's own product, which rounds differently.
 inline Eigen::MatrixXf AppliedByEigen(const DenseLayer& layer, const Eigen::MatrixXf& values) {
   return (layer.weights * values).colwise() + layer.bias;
 }
 
-// Rows of `above`, then those of `below`.
 inline Eigen::MatrixXf Stacked(const Eigen::MatrixXf& above, const Eigen::MatrixXf& below) {
   Eigen::MatrixXf both(above.rows() + below.rows(), above.cols());
   both << above, below;
@@ -42,14 +40,14 @@ struct DenseNetwork {
   Eigen::MatrixXf Evaluate(const Eigen::MatrixXf& inputs) const;
 };
 
-// e(x) = x, below zero exp(x) - 1, in place.
+// ELU in place: x, or exp(x) - 1 below zero.
 void ApplyElu(Eigen::MatrixXf* values);
 
-// Numbers brought to mean 0 and spread 1, and back; one entry per row.
+// Scales rows to mean 0 and standard deviation 1, and back.
 struct Scaling {
   Eigen::VectorXf mean, spread;
 
-  // Held within +-kLargestScaled: a network knows nothing of what lies far outside its data.
+  // Clamped to +-kLargestScaled: a network is not trained far outside its data.
   Eigen::MatrixXf Scaled(const Eigen::MatrixXf& values) const;
   Eigen::MatrixXf Unscaled(const Eigen::MatrixXf& values) const;
 };
@@ -58,26 +56,27 @@ inline constexpr float kLargestScaled = 5.0f;
 // Mean and spread over the columns; a row that hardly varies gets the spread `smallest`.
 Scaling ScalingOf(const Eigen::MatrixXf& values, float smallest = 1e-3f);
 
-// The form in which files hold a network's numbers.
+// A network's numbers as files hold them.
 struct NamedTensor {
   std::string name;
   Eigen::MatrixXf values;
 };
 using TensorList = std::vector<NamedTensor>;
 
-// One list of what a network holds serves writing and reading it (AddTensors, TakeTensors):
+// One list of a network's tensors serves writing and reading (AddTensors, TakeTensors):
 //
 //   void ListTensors(const std::string& prefix, Weights* weights, TensorFields* fields) {
 //     fields->Layer(prefix + "query", kInputs, width, &weights->query);
 //     ...
-// Written: appended to the list. Read: taken by name and shape; the first that is missing or
-// misshapen is remembered.
+//   }
+// Written tensors are appended to the list. Read tensors are found by name and must have the given
+// shape; the first problem is kept.
 class TensorFields {
  public:
   explicit TensorFields(TensorList* written) : written_(written) {}
   explicit TensorFields(const TensorList& read) : read_(&read) {}
 
-  // A matrix or a column; rows or columns of -1: any. Not finite numbers are a problem too.
+  // A matrix or a column of finite numbers; rows or columns of -1: any number.
   template <typename Values>
   void Matrix(const std::string& name, int rows, int columns, Values* values) {
     if (written_ != nullptr) {
@@ -87,7 +86,7 @@ class TensorFields {
     }
   }
   void Layer(const std::string& name, int inputs, int outputs, DenseLayer* layer);
-  // `layers` layers; sizes between them are what the tensors say.
+  // The sizes between the layers are those of the tensors.
   void Network(const std::string& name, int layers, int inputs, int outputs, DenseNetwork* network);
   void Scales(const std::string& name, int rows, Scaling* scaling);
   // A column of positive numbers.

@@ -1,4 +1,4 @@
-// models: symbols of people in a crowd.
+// models: states of people, motion words, and the classifier of states.
 #include "models/restoration/group_motion.h"
 
 #include <algorithm>
@@ -69,15 +69,15 @@ double Score(const Word& a, const Word& b) {
 }
 
 constexpr double kHalfWindow = 0.25;    // s
-constexpr double kPenalty = 1e-3;       // a sample
+constexpr double kPenalty = 1e-3;       // per sample
 constexpr double kLeastSpread = 1e-6;   // of a feature
-constexpr double kLeastGesture = 1e-3;  // m/s; where nobody moves, all others count alike
-constexpr int kEvery = 3;               // frames; neighbours say the same
+constexpr double kLeastGesture = 1e-3;  // m/s; if nobody moves, all others have the same weight
+constexpr int kEvery = 3;               // every third frame is used: adjacent ones are nearly equal
 constexpr int kMostSteps = 30;
 
 using Features = Eigen::Matrix<double, kStateFeatures, 1>;
 
-// A person at one frame as others see them.
+// What the features of others need of a person at one frame.
 struct Look {
   Eigen::Vector2d place = Eigen::Vector2d::Zero(), faces = Eigen::Vector2d::Zero();
   double gesture = 0.0;  // m/s
@@ -108,7 +108,7 @@ Look LookOf(const Pose& now, const Pose& before, double dt) {
       std::max(WristSpeed(now, before, kRightWrist, dt), WristSpeed(now, before, kLeftWrist, dt))};
 }
 
-// The person's own part.
+// The features of the person alone.
 Features Own(const Pose& now, const Pose& before, double dt) {
   const double right = WristSpeed(now, before, kRightWrist, dt);
   const double left = WristSpeed(now, before, kLeftWrist, dt);
@@ -130,7 +130,7 @@ double Reach(const Pose& of, const Pose& other) {
   return std::min((of.col(kRightWrist) - back).norm(), (of.col(kLeftWrist) - back).norm());
 }
 
-// Adds the features of the others as a person sees them.
+// Adds the features of the others.
 void AddOthers(const std::vector<const Pose*>& poses, const std::vector<Look>& looks, size_t n,
                Features* x) {
   double reach = INFINITY, facing = 0.0, least = INFINITY, gestures = 0.0, most = 0.0, to = 0.0;
@@ -152,7 +152,7 @@ void AddOthers(const std::vector<const Pose*>& poses, const std::vector<Look>& l
       to / (gestures + others * kLeastGesture);
 }
 
-// Means over +-half columns, by sums from the beginning.
+// Means over +-half columns, from cumulative sums.
 Eigen::MatrixXd Smoothed(const Eigen::MatrixXd& raw, Eigen::Index half) {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(raw.rows(), raw.cols() + 1);
   for (Eigen::Index t = 0; t < raw.cols(); ++t) sums.col(t + 1) = sums.col(t) + raw.col(t);
@@ -229,7 +229,7 @@ MotionWords::MotionWords(const std::vector<BodyMotion>& motions) {
   Eigen::Matrix<double, kWordSize, kWordSize> spread;
   spread.setZero();
   for (const Mean& mean : means) spread += (mean - centre) * (mean - centre).transpose();
-  // Eigenvalues ascend: the widest axis is the last, and is to come first.
+  // Eigenvalues ascend; the widest axis comes first here.
   axes_ = DecomposeSymmetric(spread).vectors.rowwise().reverse().transpose();
   for (Mean& mean : means) mean = axes_ * mean;
   std::vector<int> order(words.size()), place(words.size());
@@ -278,7 +278,7 @@ std::vector<double> MotionWords::Scores(const BodyMotion& motion) const {
   int nearest = kLast;
   for (size_t t = 0; t + kWordFrames <= motion.size(); ++t) {
     const Word word = WordAt(motion, t);
-    // The nearest of the word before, a frame on, is hardly ever far.
+    // The successor of the previous word's nearest word is usually near.
     const int first = nearest == kLast || next_[nearest] == kLast ? 0 : next_[nearest];
     nearest = Nearest(word, first);
     scores.push_back(Score(word, words_[nearest]));
@@ -339,7 +339,7 @@ StateClassifier::StateClassifier(const std::vector<const Annotated*>& groups, in
     Eigen::MatrixXd error = p;
     for (Eigen::Index i = 0; i < samples; ++i) error(labels[i], i) -= 1.0;
     const Eigen::MatrixXd gradient = error * x.transpose() + penalty * weights_;
-    // The Hessian is by the rows of the weights, one after the other.
+    // The weights are ordered row by row.
     Eigen::MatrixXd hessian = penalty * Eigen::MatrixXd::Identity(num_symbols * d, num_symbols * d);
     for (int a = 0; a < num_symbols; ++a) {
       for (int b = 0; b <= a; ++b) {

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// True where a restored ankle is low and slow; floor: its own height at frame 0.
+// Whether an ankle is low and slow; floor: its height at frame 0.
 bool Rests(const Vector3d& ankle, const Vector3d& before, double floor, double dt,
            const PostprocessOptions& options) {
   const double speed = (ankle - before).head<2>().norm() / dt;
@@ -23,7 +23,7 @@ Vector3d Flat(const Vector3d& v) { return {v.x(), v.y(), 0.0}; }
 // The place where one ankle is held, frame by frame.
 class FootLock {
  public:
-  // floor: the ankle's own height at frame 0; place, before: where it is now, and was.
+  // floor: the ankle's height at frame 0; place, before: its place now and a frame before.
   FootLock(double floor, const Vector3d& place, const Vector3d& before, double dt,
            const PostprocessOptions& options)
       : options_(options),
@@ -46,7 +46,7 @@ class FootLock {
     return left_over_ * fading_ / options_.release_frames;
   }
 
-  // The pull so far fades.
+  // Unlocks the foot, whose correction fades.
   void LetGo(const Vector3d& correction) {
     locked_ = false;
     left_over_ = correction;

@@ -1,13 +1,14 @@
-// models: what makes a restored motion fit the person and the floor, for every kind of restoration.
+// models: post-processing, which fits a restored motion to the person and the floor.
 //
-//   1. The residual at frame 0 (restored pose - first pose) is taken off, fading over 8 frames: the
-//      motion begins where the person stands. Where more frames were seen, they are in the motion
-//      as they were, and all that follows begins with the last of them.
-//   2. The person's own skeleton carries it out (FitSkeleton of body.h): bones keep their length.
-//   3. Feet are locked: while an ankle is low and slow it stays where it came to rest, by two-bone
-//      inverse kinematics; when it leaves, the correction fades over 4 frames. Where the model
-//      has feet (RestorationInput::feet), they are where these are (PlantFeet, below), unless more
-//      than one frame was seen: these know better.
+//   1. The residual at frame 0 (restored pose - first pose) is subtracted and fades over 8 frames,
+//      so that the motion begins with the first pose. If several frames were observed, they replace
+//      the restored ones, and the residual is that of the last of them.
+//   2. The pose is transferred to the person's own skeleton (FitSkeleton of body.h), so that bones
+//      keep their length.
+//   3. Feet are locked: an ankle that is low and slow stays where it came to rest, by two-bone
+//      inverse kinematics; when it leaves, the correction fades over 4 frames. If the model
+//      predicts feet (RestorationInput::feet), PlantFeet moves the feet there instead, unless
+//      several frames were observed.
 #pragma once
 
 #include "models/restoration/restoration.h"
@@ -26,20 +27,20 @@ struct PostprocessOptions {
   double out_of_reach = 0.005;  // m by which a leg may miss the place that it stands on
 };
 
-// now: the frame from which on; `pose` is what was seen there. Feet that move or are off the ground
-// then are not locked; at frame 0 people stand.
+// now: the last observed frame, after which frames are changed; `pose`: the one observed there. A
+// foot that moves or is off the ground at `now` is not locked; at frame 0 both feet stand.
 void FadeResidual(const Pose& pose, int frames, BodyMotion* motion, int now = 0);
 void KeepBones(const Pose& first_pose, BodyMotion* motion, int now = 0);
 void LockFeet(const Pose& first_pose, double dt, const PostprocessOptions& options,
               BodyMotion* motion, int now = 0);
 
-// All that the options ask for, in this order.
+// Applies the steps that the options select, in this order.
 void Finish(const RestorationInput& person, const PostprocessOptions& options, BodyMotion* motion);
 
-// Only the feet, where the model has some: each is where its own is, moved from frame 0. One that
-// stands is as it was at frame 0; one in the air is as high as the restoration has it, 5 cm at
-// least, and pitches as there, both fading towards lift-off and landing. A leg that is too short
-// reaches as far as it can. person.feet has an entry for each frame of the motion.
+// Moves each foot to where the model predicts it (person.feet, an entry for each frame). A standing
+// foot keeps its pose of frame 0. A foot in the air has the height (at least 5 cm) and the pitch of
+// the restored foot, both of which fade towards lift-off and landing. A leg that is too short
+// reaches as far as it can.
 void PlantFeet(const RestorationInput& person, BodyMotion* motion);
 
 }  // namespace pushid

@@ -1,4 +1,4 @@
-// models: what all restorations share, and the rigid one.
+// models: inputs of restorations, and the rigid restoration.
 #include "models/restoration/restoration.h"
 
 namespace pushid {
@@ -24,9 +24,9 @@ FramePath<Vector4<double>> TurnedPath(const RestorationInput& person, double hea
 }
 
 std::vector<RestorationInput> PeopleOf(const Scene& scene, const std::vector<Pose>& first_poses) {
-  RestorationInput alike;  // in what is the same for everybody
+  RestorationInput alike;  // the fields that are the same for all people
   alike.dt = scene.dt;
-  // The impulses of everybody who is pushed together, as one push on the first of them.
+  // The pushes on all people count as one push on the first pushed person.
   SeenPush& seen = alike.push;
   for (const ScenePush& push : scene.pushes) {
     const bool is_first = &push == &scene.pushes.front();

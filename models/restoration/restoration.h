@@ -4,10 +4,10 @@
 //   std::vector<BodyMotion> bodies = restoration.Restore({person});
 //   Finish(person, PostprocessOptions(), &bodies[0]);           // postprocess.h
 //
-// All that a restoration knows of a person is the pose at frame 0, mass, rod length and what its
-// view names (RestorationView): the pendulum's path, those of the neighbours too, or, to compare
-// with, no pendulum at all. The order of people changes nothing. Every kind turns a person to the
-// heading at frame 0 first and back at the end.
+// The inputs of a restoration are the pose at frame 0, mass, rod length and what its view selects
+// (RestorationView): the pendulum's path, also those of the neighbours, or, for comparison, no
+// pendulum. The order of people does not matter. Every kind works in the frame of the heading at
+// frame 0.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 
 namespace pushid {
 
-// The kinds of restoration, one row each, and what they may be told of the motion.
+// The kinds of restoration, one row each.
 //
 // A new kind is a value and a row here, and a row in ident/bodies/restoration_files.h, which names
 // the functions that make it from a file and train it.
@@ -33,7 +33,7 @@ struct RestorationKindRow {
   const char* name;  // in files and on the command line
   RestorationKind value;
   const char* what;      // for the list of kinds on the command line
-  bool trained;          // it has weights, and stands in a folder
+  bool trained;          // it has weights, in a folder
   bool sees_neighbours;  // it has RestorationView::kNeighbours
 };
 
@@ -45,12 +45,11 @@ inline constexpr RestorationKindRow kRestorationKinds[] = {
 constexpr const auto& Names(RestorationKind) { return kRestorationKinds; }
 static_assert(RowsAreInOrder(kRestorationKinds), "RowOf finds a row by its value");
 
-// Information that a restoration has of the motion, besides the first pose, mass and size.
+// The inputs of a restoration besides the first pose, mass and size.
 enum class RestorationView {
   kPendulum,    // the person's own pendulum
-  kNeighbours,  // those of the neighbours too, where the kind sees them
-  kPose  // no pendulum, to see what it is worth: `window` has the first pose and the push, `cvae`
-         // the pose before
+  kNeighbours,  // also those of the neighbours, for kinds with sees_neighbours
+  kPose         // no pendulum, for ablations: `window` has the push, `cvae` the previous pose
 };
 constexpr EnumNames<RestorationView, 3> Names(RestorationView) {
   return {{{"pendulum", RestorationView::kPendulum},
@@ -58,15 +57,14 @@ constexpr EnumNames<RestorationView, 3> Names(RestorationView) {
            {"pose", RestorationView::kPose}}};
 }
 
-// The push from outside: all that a restoration without pendulums is told of the motion.
+// The external push, an input of `window` with RestorationView::kPose.
 struct SeenPush {
-  Vector3<double> velocity =
-      Vector3<double>::Zero();                      // m/s: impulse over the mass of who is pushed
-  double duration = 0.0;                            // s, of the longest push
-  Vector3<double> place = Vector3<double>::Zero();  // m: hip of who is pushed, at frame 0
+  Vector3<double> velocity = Vector3<double>::Zero();  // m/s: impulse over the pushed person's mass
+  double duration = 0.0;                               // s, of the longest push
+  Vector3<double> place = Vector3<double>::Zero();     // m: the pushed person's hip at frame 0
 };
 
-// The right and the left foot of a model.
+// The feet that a model predicts, right and left.
 struct FootPath {
   Eigen::Vector2d moved[2];  // m, since frame 0
   bool flies[2];             // off the ground
@@ -79,49 +77,49 @@ struct RestorationInput {
   double dt = 1.0 / 60.0;          // s
   double push_start = 0.0;         // s, of the first push on anybody
   SeenPush push = {};
-  std::vector<FootPath> feet = {};  // frame by frame; empty: the model says nothing of them
-  // Length of a rod that moves and the cart's height at every frame of q, m; empty: those of body.
+  std::vector<FootPath> feet = {};  // frame by frame; empty: the model predicts none
+  // Length of a moving rod and the cart's height at every frame of q, m; empty: those of body.
   std::vector<Eigen::Vector2d> lengths = {};
-  // Poses of the first frames, first_pose among them, where more than that was seen.
+  // The observed poses, first_pose among them; empty: first_pose alone.
   std::vector<Pose> seen = {};
 
   Body BodyAt(int frame) const {
     if (lengths.empty()) return body;
     return {body.mass, lengths[frame][0], lengths[frame][1]};
   }
-  // One frame more of a rollout's path; lift: of the cart (BodyNow).
+  // Appends a frame of a rollout.
   void Follow(const PendulumState<double>& state, bool rod_moves) {
     q.push_back(state.q);
     if (!rod_moves) return;
     const Body now = BodyNow(body, state.rod);
     lengths.emplace_back(now.rod_length, now.cart_height);
   }
-  // The last frame that was seen.
+  // The last observed frame.
   int Now() const { return seen.empty() ? 0 : static_cast<int>(seen.size()) - 1; }
 };
 
 class Restoration {
  public:
   virtual ~Restoration() = default;
-  virtual std::string_view kind() const = 0;  // its name
-  // Bare motions, one per person with as many frames as q has; without post-processing.
+  virtual std::string_view kind() const = 0;
+  // Motions before post-processing, one per person, each with as many frames as q.
   virtual std::vector<BodyMotion> Restore(const std::vector<RestorationInput>& people) const = 0;
 };
 
-// The first pose carried along by the rod's tip: what any network has to beat.
+// The first pose moved with the rod's tip: the baseline of all networks.
 class RigidRestoration : public Restoration {
  public:
   std::string_view kind() const override { return RowOf(RestorationKind::kRigid).name; }
   std::vector<BodyMotion> Restore(const std::vector<RestorationInput>& people) const override;
 };
 
-// The tip of the rod, where the hip goes.
+// The tip of the rod, which is the hip.
 Vector3<double> TipAt(const RestorationInput& person, int frame);
 
-// A pendulum turned about z: the cart's place and the rod's direction are.
+// Turns a pendulum about z: the cart's place and the rod's direction.
 Vector4<double> TurnedPendulum(const Vector4<double>& q, double angle);
 
-// Values frame by frame read at any frame, linearly; beyond the ends the ends are seen.
+// The value at any frame, by linear interpolation; the first or last value outside.
 template <typename Value>
 Value ReadAt(const std::vector<Value>& values, double frame) {
   const double at = std::clamp(frame, 0.0, static_cast<double>(values.size() - 1));
@@ -131,7 +129,7 @@ Value ReadAt(const std::vector<Value>& values, double frame) {
   return (1.0 - share) * values[low] + share * values[high];
 }
 
-// Values with their rates: a path of derivatives is read as the path itself.
+// Values by frame with their rates, both interpolated by ReadAt.
 template <typename Value>
 class FramePath {
  public:
@@ -154,10 +152,10 @@ class FramePath {
 // The person's pendulum in the frame of a heading.
 FramePath<Vector4<double>> TurnedPath(const RestorationInput& person, double heading);
 
-// People of a scene in their first poses, without pendulums: q is empty.
+// The people of a scene without pendulums: q is empty.
 std::vector<RestorationInput> PeopleOf(const Scene& scene, const std::vector<Pose>& first_poses);
 
-// A person mirrored in the plane y = 0.
+// Mirrored in the plane y = 0.
 RestorationInput Mirrored(const RestorationInput& person);
 
 }  // namespace pushid

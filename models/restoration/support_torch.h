@@ -1,4 +1,4 @@
-// models: LibTorch kept in one place: what the trainers share. Included by *_torch.cc files alone.
+// models: LibTorch functions that the trainers share. Included by *_torch.cc files alone.
 #pragma once
 
 #include <malloc.h>
@@ -13,14 +13,14 @@
 #include "models/restoration/dense_network.h"
 #include "models/restoration/trainer.h"
 
-// LibTorch and glog both define LOG and CHECK: a file that includes this includes no glog.
+// LibTorch and glog both define LOG and CHECK, so a file that includes this must not include glog.
 
 namespace pushid {
 
 using torch::Tensor;
 using torch::optim::AdamW;
 
-// A row per sample, as LibTorch's layers want them; Eigen's columns are such rows in memory.
+// A row per sample, as LibTorch's layers expect; Eigen's columns have the same memory layout.
 inline Tensor ToTensor(const Eigen::MatrixXf& columns) {
   return torch::from_blob(const_cast<float*>(columns.data()), {columns.cols(), columns.rows()})
       .clone();
@@ -42,7 +42,7 @@ inline DenseLayer ToLayer(const torch::nn::Linear& linear) {
   return {ToMatrix(linear->weight), ToVector(linear->bias)};
 }
 
-// Learning rate of a step as a share of the largest: up by a cosine over the first 30 %, then down.
+// The learning rate as a share of the largest: up by a cosine over the first 30 %, then down.
 inline double OneCycle(double done) {
   constexpr double kUp = 0.3;
   const double floor = done < kUp ? 0.04 : 1e-4;
@@ -50,8 +50,7 @@ inline double OneCycle(double done) {
   return floor + (1.0 - floor) * 0.5 * (1.0 + std::cos(M_PI * phase));
 }
 
-// One step at a learning rate. clip: the gradient's largest norm, over `parameters`; 0: it is not
-// held.
+// Takes one step. clip: largest norm of the gradient over `parameters`; 0: not clipped.
 inline void Improve(AdamW* optimizer, double rate, const Tensor& loss,
                     const std::vector<Tensor>& parameters = {}, double clip = 0.0) {
   for (auto& group : optimizer->param_groups()) {
@@ -63,7 +62,7 @@ inline void Improve(AdamW* optimizer, double rate, const Tensor& loss,
   optimizer->step();
 }
 
-// Both modules are of one shape.
+// Both modules must have the same shape.
 inline void CopyWeights(const torch::nn::Module& from, torch::nn::Module* to) {
   torch::NoGradGuard no_grad;
   const std::vector<Tensor> source = from.parameters(), target = to->parameters();
@@ -71,24 +70,23 @@ inline void CopyWeights(const torch::nn::Module& from, torch::nn::Module* to) {
 }
 
 inline void StartTraining(const TrainerOptions& options) {
-  // Tensors of every step come from memory that is kept: mapped anew they take a tenth of the time.
+  // Keeps freed memory for the next step's tensors: mapping it again takes a tenth of the time.
   mallopt(M_MMAP_THRESHOLD, 1 << 25);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
   torch::set_num_threads(options.num_threads);
   torch::manual_seed(options.seed);
 }
 
-// Training by steps, with a point of the curve for every round of them. A round is of one stage.
+// A training in rounds of kStepsOfRound steps; a round never crosses two stages.
 template <typename Interface>
 struct StepsTraining : Interface {
   int step = 0;
 
   virtual int AllSteps() const = 0;
-  virtual double Step() = 0;  // takes a step; its loss
-  // Name of the stage that a step belongs to.
-  virtual const char* Stage(int of_step) const = 0;
+  virtual double Step() = 0;                         // takes a step and returns its loss
+  virtual const char* Stage(int of_step) const = 0;  // its name
   virtual int StageEnd(int /*of_step*/) const { return AllSteps(); }
-  virtual double HeldLoss(int of_step) = 0;  // NaN where nothing is held
+  virtual double HeldLoss(int of_step) = 0;  // NaN without held data
   virtual void Finish() {}                   // after the last step
 
   bool Done() const override { return step >= AllSteps(); }

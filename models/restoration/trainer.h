@@ -1,11 +1,11 @@
-// models: a training, with LibTorch behind it and nothing of LibTorch in front; and the trainings
-// of restorations.
+// models: the interface of trainings, whose implementations (*_torch.cc) alone need LibTorch, and
+// the trainings of restorations.
 //
 //   const auto trainer = MakeRegressionTrainer(training, validation, options);
 //   while (!trainer->Done()) Show(trainer->RunRound());
 //   Use(trainer->Network());
 //
-// With one thread a seed gives the same bits.
+// With one thread, a training with the same seed repeats to the bit.
 #pragma once
 
 #include <array>
@@ -20,22 +20,21 @@
 
 namespace pushid {
 
-// Options of every training; those of a kind add to them.
+// Options of every training, from which those of each kind derive.
 struct TrainerOptions {
   uint64_t seed = 1;
   int num_threads = 1;
 };
 
-inline constexpr int kStepsOfRound = 50;  // where a round is not an epoch
+inline constexpr int kStepsOfRound = 50;  // in trainings without epochs
 
-// A point of the training curve: one round, which is an epoch or some steps.
+// A point of the training curve, after a round: an epoch, or some steps.
 struct TrainingPoint {
   int epoch = 0;
   double training_loss = 0.0, validation_loss = 0.0;
-  std::string stage{};  // where a training has several
+  std::string stage{};  // empty: the training has one stage
 };
 
-// done: share of all steps, 0 .. 1.
 using TrainingProgress = std::function<void(const TrainingPoint& point, double done)>;
 
 class Trainer {
@@ -43,22 +42,21 @@ class Trainer {
   virtual ~Trainer() = default;
   virtual bool Done() const = 0;
   virtual TrainingPoint RunRound() = 0;
-  virtual double ShareDone() const = 0;  // after a round; 0 .. 1
+  virtual double ShareDone() const = 0;  // of all steps, 0 .. 1
 };
 
-// A training of one kind of network, in a *_torch.cc.
 template <typename Trained>
 class TrainerOf : public Trainer {
  public:
   virtual Trained Network() const = 0;
 };
 
-// Training of a dense network on samples (the window's, or any other's).
+// Training of a dense network.
 //
 // Loss: mean absolute error of the outputs, weighted by sample. AdamW with a one-cycle learning
-// rate (up over the first 30 % of the steps, down to nothing by cosines), dropout between layers,
-// noise on the scaled inputs. A round is an epoch; Network() has the weights of the epoch with the
-// least validation loss; training ends early after `patience` epochs without a better one.
+// rate (rising over the first 30 % of the steps, then falling to zero, both by cosines), dropout
+// between layers, noise on the scaled inputs. A round is an epoch; Network() has the weights of the
+// epoch with the least validation loss; training ends after `patience` epochs without a better one.
 
 struct RegressionSamples {
   Eigen::MatrixXf inputs;   // scaled; a column per sample
@@ -83,24 +81,23 @@ std::unique_ptr<TrainerOf<DenseNetwork>> MakeRegressionTrainer(const RegressionS
 
 // Training of LDP's chain.
 //
-// Four stages (those that the layout has), one after the other: the lower autoencoder, its sampler,
-// the upper autoencoder (on lower positions that the finished lower chain predicts), its sampler.
-// Every step takes one frame of 64 rollouts: teacher-forced for the first 14 % of a stage's steps,
-// then more and more (14 %) and for the rest (72 %) on what the network said itself, without
+// Up to four stages (those of the layout), in this order: the lower autoencoder, its sampler, the
+// upper autoencoder (on lower positions predicted by the finished lower chain), its sampler. A step
+// takes one frame of 64 rollouts. The first 14 % of a stage's steps start from true frames; over
+// the next 14 % a rising share, and then all, start from the network's own output, without
 // gradients through earlier frames.
 //   autoencoder: mean square error of the scaled frame + 0.005 KL to a standard normal, mean
 //                over the latent variable
-//   sampler:     squared difference of its Gaussian to the encoder's: published (Eq. 7)
-//                |mu - mu_e|^2 + |sigma - sigma_e|^2, own of mean and log-variance, mean over the
-//                latent variable; for the lower body also the foot-skate error of the output
+//   sampler:     squared difference from the encoder's Gaussian: published (Eq. 7)
+//                |mu - mu_e|^2 + |sigma - sigma_e|^2; own: that of mean and log-variance, mean over
+//                the latent variable; for the lower body also the foot-skate error of the output
 //                (cvae_module_torch.h)
-// Training `published`: Adam, autoencoders from 1e-4 down to 1e-7 in a straight line, samplers at
-// 1e-4, and the sampler's output is decoded from a drawn z. `own` (default): AdamW with one cycle
-// up to 1e-3, and z is the sampler's mean. Published is no weight of the foot skate: it is chosen
-// here.
-// Source: Yue et al., CVPR 2024; autoencoders as in Ling et al., Character controllers using motion
-// VAEs, SIGGRAPH 2020. A round is a few hundred steps; after each the held-out sequences judge, and
-// of every stage's last part the best round is kept.
+// Training `published`: Adam, a rate that falls linearly from 1e-4 to 1e-7 for autoencoders and is
+// 1e-4 for samplers, whose output is decoded from a drawn z. `own` (default): AdamW with one cycle
+// up to 1e-3, and z is the sampler's mean. The weight of the foot skate is not published. Source:
+// Yue et al., CVPR 2024; autoencoders as in Ling et al., Character controllers using motion VAEs,
+// SIGGRAPH 2020. A round is a few hundred steps. The weights of the round with the least held-out
+// loss are kept, among the rounds of the second half of a stage.
 
 // One person's motion; columns are frames, scaled.
 struct CvaeSequence {
@@ -115,13 +112,13 @@ constexpr EnumNames<CvaeTraining, 2> Names(CvaeTraining) {
 
 struct CvaeOptions : TrainerOptions {
   CvaeTraining training = CvaeTraining::kOwn;
-  std::array<int, 4> steps = {12000, 8000, 12000, 8000};  // of the stages, where they are
+  std::array<int, 4> steps = {12000, 8000, 12000, 8000};  // of the stages
   int rollout = 8, sampler_rollout = 16;                  // frames
   int batch = 64;
-  int round = 400;              // steps between two judgements
+  int round = 400;              // steps
   double learning_rate = 1e-3;  // the highest of the cycle (own)
   double kl_weight = 0.005;
-  double skate_weight = 0.06;  // a cm a frame
+  double skate_weight = 0.06;  // per cm a frame
 };
 
 inline constexpr const char* kCvaeStageNames[4] = {"lower autoencoder", "lower sampler",
@@ -129,14 +126,14 @@ inline constexpr const char* kCvaeStageNames[4] = {"lower autoencoder", "lower s
 
 class CvaeTrainer : public TrainerOf<CvaeWeights> {
  public:
-  // scalings: the layout, and for the foot skate, which is in m; they become part of Network(). The
-  // held-out loss is the mean error of the joint positions, m, of whole sequences predicted from
-  // their first frame: of autoencoders with the encoder's z, of samplers with their own.
+  // scalings: the layout and the scales, which become part of Network(). The held-out loss is the
+  // mean error of the joint positions, m, of whole sequences predicted from their first frame, with
+  // the encoder's z in stages of autoencoders and the sampler's mean in those of samplers.
   static std::unique_ptr<CvaeTrainer> Make(const std::vector<CvaeSequence>& training,
                                            const std::vector<CvaeSequence>& held,
                                            const CvaeWeights& scalings, const CvaeOptions& options);
 
-  // Weights of the four stages' networks: 865536, 136960, 1097904, 159232; 0 for absent stages.
+  // Numbers of weights of the stages: 865536, 136960, 1097904, 159232; 0 for absent stages.
   virtual std::array<int64_t, 4> NumParameters() const = 0;
 };
 

@@ -42,8 +42,7 @@ Tensor AbsoluteLoss(const Tensor& output, const Tensor& target, const Tensor& we
   return ((output - target).abs().mean(1) * weight).sum() / weight.sum();
 }
 
-// A training by epochs of batches; `best` has the weights of the epoch with the least held-out
-// loss.
+// `best` has the weights of the epoch with the least held-out loss.
 struct RegressionTraining : TrainerOf<DenseNetwork> {
   RegressionOptions options;
   std::shared_ptr<DenseModule> network, best;
@@ -62,8 +61,8 @@ struct RegressionTraining : TrainerOf<DenseNetwork> {
     held_weights = ToTensor(held.weights);
     const int in = static_cast<int>(inputs.size(1)), out = static_cast<int>(targets.size(1));
     network = std::make_shared<DenseModule>(in, out, options);
-    best =
-        std::make_shared<DenseModule>(in, out, options);  // drawn as well: a seed keeps its numbers
+    // The draws of `best` are part of the seed's sequence.
+    best = std::make_shared<DenseModule>(in, out, options);
     CopyWeights(*network, best.get());
     optimizer = MakeOptimizer(network->parameters(), options.learning_rate, options.weight_decay);
   }
@@ -110,8 +109,6 @@ struct RegressionTraining : TrainerOf<DenseNetwork> {
   DenseNetwork Network() const override { return best->Weights(); }
 };
 
-// The stages of LDP's chain, one after the other.
-
 constexpr double kWorstCvaeLoss = 1e30;
 constexpr double kTeacher = 0.14, kRamp = 0.14;  // shares of a stage's steps
 constexpr int kStages = 4;
@@ -138,7 +135,7 @@ struct CvaeSequences {
 
   std::vector<Tensor> body;  // of each half
   Tensor pendulum;
-  Tensor lower_predicted;  // positions, once the lower chain is there
+  Tensor lower_predicted;  // positions, set when the lower chain is finished
   std::vector<int64_t> frames;
   int64_t longest;
 };
@@ -151,10 +148,10 @@ struct CvaeStages : CvaeTrainer {
   std::unique_ptr<AdamW> optimizer;
   int stage = 0, step = 0, rounds = 0;
   double best_loss = kWorstCvaeLoss;
-  // The batch that is being rolled out.
+  // The current batch of rollouts.
   Tensor rows, first;
   int64_t at = 0, rollout_left = 0;
-  Tensor state;  // x_t of the batch, true or its own
+  Tensor state;  // x_t of the batch, true or predicted
 
   CvaeStages(const std::vector<CvaeSequence>& learnt, const std::vector<CvaeSequence>& judged,
              const CvaeWeights& given_scalings, const CvaeOptions& given)
@@ -180,7 +177,6 @@ struct CvaeStages : CvaeTrainer {
   static Tensor Positions(const Tensor& frames, int numbers) {
     return frames.slice(-1, 3, 3 + numbers);
   }
-  // x_t and, for the upper body, the lower positions of the next frame.
   Tensor Condition(const Tensor& x, const Tensor& lower_next) const {
     return half() == kUpperHalf ? Join(x, lower_next) : x;
   }
@@ -188,11 +184,9 @@ struct CvaeStages : CvaeTrainer {
   bool Has(int which) const {
     return (layout().halves || which < 2) && (layout().pendulum || which % 2 == 0);
   }
-  // Steps of a stage; 0 where the layout does not have it.
   int Steps(int which) const { return Has(which) ? options.steps[which] : 0; }
 
   void StartStage() {
-    // The lower chain is finished.
     if (stage == 2) PredictLower(&training), PredictLower(&held);
     // AdamW without weight decay is Adam.
     optimizer = MakeOptimizer(Trained(), CvaeLearningRate(options, Sampler(), 0.0),
@@ -202,8 +196,7 @@ struct CvaeStages : CvaeTrainer {
     best_loss = kWorstCvaeLoss;
   }
 
-  // Sequences at random, recordings weighted by nothing else; a random first frame that leaves
-  // room.
+  // Draws sequences, and first frames with room for the rollout.
   void NewBatch() {
     const int64_t length = Sampler() ? options.sampler_rollout : options.rollout;
     rows = torch::randint(training.count(), {options.batch}, torch::kInt64);
@@ -220,7 +213,7 @@ struct CvaeStages : CvaeTrainer {
     state = training.body[half()].index({rows, first});
   }
 
-  // FSE of the batch's outputs, with what they started from, in m.
+  // FSE of the batch's outputs.
   Tensor Skate(const Tensor& output, const Tensor& pendulum) const {
     const auto unscaled = [](const Scaling& scaling, const Tensor& t) {
       return t * ToTensor(scaling.spread) + ToTensor(scaling.mean);
@@ -271,8 +264,8 @@ struct CvaeStages : CvaeTrainer {
     return loss.item<double>();
   }
 
-  // Whole sequences from their first frame: [sequence, frame, number]. z: the sampler's mean where
-  // `sampled` and there is a sampler (otherwise that of the prior), or the encoder's.
+  // Whole sequences predicted from their first frame: [sequence, frame, number]. sampled: z is the
+  // mean of the sampler, or of the prior without a sampler; otherwise of the encoder.
   Tensor RollOut(const CvaeSequences& s, bool sampled) {
     torch::NoGradGuard no_grad;
     const Tensor& frames = s.body[half()];
@@ -307,7 +300,7 @@ struct CvaeStages : CvaeTrainer {
   }
 
   void PredictLower(CvaeSequences* s) {
-    const int kept = std::exchange(stage, 0);  // of the lower body
+    const int kept = std::exchange(stage, 0);  // RollOut uses the stage's half of the body
     s->lower_predicted = Positions(RollOut(*s, true), layout().Positions(kLowerHalf)).contiguous();
     stage = kept;
   }
@@ -328,7 +321,7 @@ struct CvaeStages : CvaeTrainer {
     int steps = 0;
     while (steps < options.round && step < Steps(stage)) sum += Step(), ++steps;
     TrainingPoint point = {++rounds, sum / std::max(1, steps), HeldLoss(), kCvaeStageNames[stage]};
-    // Best of the part in which the network goes on from its own frames.
+    // In the second half the network starts from its own frames.
     if (point.validation_loss < best_loss && step >= Steps(stage) / 2) {
       best_loss = point.validation_loss;
       CopyWeights(Module(), best[half()].get());

@@ -1,4 +1,4 @@
-// models: all frames of a person in one pass through the network.
+// models: the window network: its inputs and outputs, and the restored motion.
 #include "models/restoration/window_restoration.h"
 
 #include <algorithm>
@@ -55,7 +55,7 @@ Eigen::MatrixXf PushInputs(const RestorationInput& person) {
   return push.replicate(1, static_cast<int>(person.q.size()));
 }
 
-// Only the time and a rod that moves differ from frame to frame.
+// Inputs about the person; only the time and the length of a moving rod vary between frames.
 Eigen::MatrixXf PersonInputs(const RestorationInput& person) {
   const double heading = Heading(person.first_pose);
   const Eigen::Matrix3d turn = TurnAboutZ(-heading);
@@ -91,7 +91,7 @@ int QuarterOf(const Eigen::Vector2d& away) {
   return away.y() > 0.0 ? 2 : 3;
 }
 
-// The way of the rod's tip (x, y), seen along a turned path.
+// The path of the rod's tip (x, y); turned: the person's pendulum in the frame of a heading.
 FramePath<Eigen::Vector2d> TipPath(const RestorationInput& person,
                                    const FramePath<Vector4<double>>& turned) {
   std::vector<Eigen::Vector2d> tips;
@@ -101,7 +101,7 @@ FramePath<Eigen::Vector2d> TipPath(const RestorationInput& person,
   return {std::move(tips), person.dt};
 }
 
-// Indices of the nearest in each quarter; -1: nobody.
+// Indices of the nearest people in each quarter; -1: nobody.
 std::array<int, kNeighbourQuarters> Nearest(const std::vector<RestorationInput>& people, int n,
                                             const Eigen::Matrix3d& turn) {
   std::array<int, kNeighbourQuarters> nearest;

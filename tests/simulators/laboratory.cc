@@ -20,7 +20,7 @@ constexpr double kSwing = 0.3;       // s
 constexpr double kClearance = 0.06;  // m
 constexpr double kSwayMemory = 0.3;  // s, of the noise at the ankles
 
-// Winter's table for both sides: shanks and thighs are the legs; feet have mass but no motion.
+// Winter's table for both sides: the legs are shanks and thighs; feet have mass but do not move.
 struct WinterSegments {
   explicit WinterSegments(const LaboratoryPerson& person)
       : m1(0.293 * person.mass_kg),
@@ -77,7 +77,7 @@ class Walker {
     now_ = now_ + h_ / 6.0 * (a + 2.0 * b + 2.0 * c + d);
   }
 
-  // Once a sample: lifts the hind foot where balance was lost a reaction time ago.
+  // Called once per sample: lifts the hind foot if balance was lost a reaction time ago.
   void Decide(LaboratoryTrial* trial) {
     const double t = time();
     const auto [back, front] = Support(t);
@@ -91,7 +91,7 @@ class Walker {
     if (swings || lost_.size() <= late || !lost_.back() || !lost_[lost_.size() - 1 - late]) return;
     const int foot = Foot(1, t) < Foot(0, t) ? 1 : 0;
     const double stand = Foot(1 - foot, t) + body_.toe;
-    // The foot steps past where the extrapolated centre of mass will be when it lands.
+    // The foot lands beyond the extrapolated centre of mass at landing.
     const double landing = stand + (beyond - stand) * std::exp(rate * kSwing);
     swing_[foot] = {Foot(foot, t), std::max(landing - 0.2 * body_.toe, stand), t};
     trial->steps.push_back({foot, t, t + kSwing, swing_[foot].to - swing_[foot].from});
@@ -137,7 +137,7 @@ class Walker {
                 body_.m2 * body_.c2 * std::sin(angles[1])) /
                    (body_.m1 + body_.m2);
   }
-  // Hindmost and foremost point of the feet that stand.
+  // Hindmost and foremost point of the standing feet.
   std::pair<double, double> Support(double t) const {
     double back = 1e9, front = -1e9;
     for (int foot : {0, 1}) {
@@ -148,7 +148,7 @@ class Walker {
     return {back, front};
   }
 
-  // s steps of h after the last one in the history, less the delay; at rest before.
+  // The state `s` steps of h after the last one in the history, minus the delay; at rest before.
   Moving Late(double s) const {
     const double at = static_cast<double>(history_.size()) - 1.0 + s - person_.delay_s / h_;
     if (at <= 0.0) return {person_.lean_rad, 0.0, 0.0, 0.0};
@@ -215,7 +215,7 @@ struct Made {
   LaboratoryTrial trial;
 };
 
-// Trials of the wanted kind: who steps where nobody should, or falls, is pulled anew.
+// Trials with or without steps as wanted; a trial with a fall or an unwanted step is repeated.
 Made DrawTrial(const LaboratoryPerson& person, bool steps, int number, double seconds,
                Random* random) {
   for (int attempt = 0; attempt < 50; ++attempt) {
@@ -234,7 +234,7 @@ Made DrawTrial(const LaboratoryPerson& person, bool steps, int number, double se
   throw Error{"a person of these gains neither stands nor steps; try another seed"};
 }
 
-// Files need no more decimals than instruments give.
+// Rounds to the decimals that instruments have.
 double ToDecimals(double value, double per_unit) { return std::round(per_unit * value) / per_unit; }
 
 PointMotion Markers(const LaboratoryPerson& person, const LaboratoryTrial& trial, Random* noise) {
@@ -295,7 +295,7 @@ NumericTable Plates(const LaboratoryTrial& trial, Random* noise) {
     const LaboratorySample& s = trial.samples[i];
     const double left = LeftShare(s);
     std::vector<double> row = {static_cast<double>(i) / kLaboratoryHz};
-    // Each foot presses so that both together press at the centre.
+    // The loads of the feet add up to one at the centre of pressure.
     const double beyond = s.centre_m - left * s.foot[0] - (1.0 - left) * s.foot[1];
     for (int foot : {0, 1}) {
       const double share = foot == 0 ? left : 1.0 - left;
@@ -357,7 +357,7 @@ nlohmann::ordered_json TruthOf(const LaboratoryPerson& person) {
           {"delay_s", person.delay_s},    {"lean_rad", person.lean_rad}};
 }
 
-// Sums of active and passive gains, for the person that the programs quote gains for: the mean.
+// Sums of active and passive gains, for the reference person.
 nlohmann::ordered_json QuotedTruth(const std::vector<LaboratoryPerson>& people) {
   double stiffness = 0.0, damping = 0.0, delay = 0.0, share = 0.0;
   const double each = 1.0 / static_cast<double>(people.size());

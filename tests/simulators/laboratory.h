@@ -1,26 +1,25 @@
-// Recordings as a laboratory has them, of people who are not the model that is fitted.
+// Recordings as a laboratory has them, of people of a model other than the fitted one.
 //
 //   LaboratoryOptions options;
 //   MaybeError failed = WriteLaboratoryStudy("lab", options);  // lab/manifest.json, lab/truth.json
 //
 // A person is a double inverted pendulum in the sagittal plane: legs on the ankles, head, arms and
 // trunk on the hips, with the masses and lengths of Winter (Biomechanics and Motor Control of Human
-// Movement, 4th ed., table 4.1). Of absolute angles a (legs) and b (trunk), ankles at x:
+// Movement, 4th ed., table 4.1). With absolute angles a (legs) and b (trunk), and ankles at x:
 //
-//   | m1 c1^2 + I1 + m2 l^2   m2 l c2 cos(a - b) | a''    (m1 c1 + m2 l)(g sin a - x'' cos a)
-//   | m2 l c2 cos(a - b)      m2 c2^2 + I2       | b''  =   + T - H + F l cos a - m2 l c2 sin(a -
-//   b) b'^2,
-//                                                         m2 c2 (g sin b - x'' cos b) + H
-//                                                           + m2 l c2 sin(a - b) a'^2
+//   (m1 c1^2 + I1 + m2 l^2) a'' + m2 l c2 cos(a - b) b''
+//       = (m1 c1 + m2 l)(g sin a - x'' cos a) + T - H + F l cos a - m2 l c2 sin(a - b) b'^2
+//   m2 l c2 cos(a - b) a'' + (m2 c2^2 + I2) b''
+//       = m2 c2 (g sin b - x'' cos b) + H + m2 l c2 sin(a - b) a'^2
 //
-// T at the ankles and H at the hips are stiffness and damping, passive ones now and active ones
-// `delay` seconds late, with a tonic torque that holds a small lean forward, and slow noise at the
-// ankles (sway). T cannot move the centre of pressure out of the feet that stand. Where the
-// extrapolated centre of mass (Hof, J. Biomech. 38, 2005) left the feet a reaction time ago, the
-// hind foot steps to where it will be (minimum jerk); x is the middle of the two ankles.
+// T at the ankles and H at the hips are stiffness and damping, passive ones at once and active ones
+// after `delay` seconds, with a tonic torque that holds a small lean forward, and slow noise at the
+// ankles (sway). T cannot move the centre of pressure out of the standing feet. When the
+// extrapolated centre of mass (Hof, J. Biomech. 38, 2005) has been outside the feet for a reaction
+// time, the hind foot steps to its future place (minimum jerk); x is the middle of the two ankles.
 //
-// Integrated by Runge-Kutta of fourth order at half a millisecond. No code of models/ is used: its
-// tests check that.
+// The integrator is Runge-Kutta of fourth order at half a millisecond. No code of models/ is used,
+// because these people test it.
 #pragma once
 
 #include <cstdint>
@@ -52,7 +51,7 @@ struct LaboratoryPush {
   double ForceAt(double t) const;
 };
 
-// Everything at one time, forward and up.
+// The state at one time; x forward, z up.
 struct LaboratorySample {
   double legs = 0.0, trunk = 0.0;                          // rad
   double foot[2] = {}, foot_lift[2] = {};                  // left and right ankle, m; from standing
@@ -79,15 +78,15 @@ struct LaboratoryOptions {
 // The study's people: common gains, with a spread of 5 %.
 std::vector<LaboratoryPerson> DrawLaboratoryPeople(const LaboratoryOptions& options);
 
-// sway: N m, standard deviation of the slow noise; half: steps of a quarter of a millisecond. Fails
-// when the person falls.
+// sway: N m, standard deviation of the slow noise; half: steps of a quarter of a millisecond.
+// Errors: the person falls.
 Result<LaboratoryTrial> SimulateLaboratoryTrial(const LaboratoryPerson& person,
                                                 const LaboratoryPush& push, double seconds,
                                                 double sway, uint64_t seed, int substeps = 2);
 
 // TRC files of markers (100 Hz, mm, y up), tables of two force platforms and of the load cell
 // (1 kHz, with noise and an offset), manifest.json, and the truth in truth.json: gains of the
-// reference person (as pushid quotes them), gains of everybody, and the steps.
+// reference person (as pushid quotes them), gains of all people, and the steps.
 MaybeError WriteLaboratoryStudy(const std::string& folder, const LaboratoryOptions& options);
 
 }  // namespace pushid

@@ -1,5 +1,4 @@
-// Synthetic recordings of people on ground that moves and on force platforms, in memory and as
-// files.
+// Synthetic recordings of people on moving ground and on force platforms, in memory and as files.
 #pragma once
 
 #include <algorithm>
@@ -105,7 +104,7 @@ inline Result<std::vector<SyntheticRecording>> MakeOnPlatforms(PlatformOptions o
   return made;
 }
 
-// Writes a table of a row for each frame: its time, then the numbers. Returns its name.
+// Writes a table with a row for each frame: its time, then the numbers. Returns its name.
 template <typename Row>
 std::string WriteTimed(const std::string& folder, const std::string& file, const std::string& names,
                        const Recording& recording, const Row& row) {

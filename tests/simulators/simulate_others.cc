@@ -1,10 +1,10 @@
-// simulate-others: recordings of people who are not pushid's model, with their truth.
+// simulate-others: recordings of people of models other than pushid's, with their truth.
 //
-//   simulate-others --laboratory=4 --out=lab     laboratory.h: two links, steps, force platforms
-//   simulate-others --clips=4 --out=clips        synthetic_clips.h: motion capture of a stick
-//   figure simulate-others --turns=16 --out=turns       synthetic_clips.h: people who talk in turns
+//   simulate-others --laboratory=4 --out=lab   laboratory.h: two links, steps, force platforms
+//   simulate-others --clips=4 --out=clips      synthetic_clips.h: clips of a stick figure
+//   simulate-others --turns=16 --out=turns     synthetic_clips.h: people who talk in turns
 //
-// What stands in the folder is replaced.
+// Existing files in the folder are replaced.
 #include <gflags/gflags.h>
 
 #include <cstdio>

@@ -3,9 +3,9 @@
 // data.
 //
 //   phi' = 2 pi c(t)      c: the action's cadence times exp(0.1 n(t)), Hz
-//   thighs and upper arms swing about x by A sin(phi) and -A sin(phi), the other side half a turn
-//   on knees and elbows bend by B (1 + sin(phi + pi / 2)) / 2, the waist sways about z by C
-//   sin(phi)
+//   thighs, upper arms  swing about x by A sin(phi), -A sin(phi), the other side half a turn later
+//   knees, elbows       bend by B (1 + sin(phi + pi / 2)) / 2
+//   waist               sways about z by C sin(phi)
 //
 // Every clip has its own amplitudes (times exp(0.15 N(0, 1))), first phase, and slow noise n(t) of
 // unit variance and 1 s memory in the cadence, and in all angles by 0.02 rad. 50 frames a second.
@@ -44,22 +44,21 @@ class SlowNoise {
 };
 
 // Writes FOLDER/skeleton.json, FOLDER/train/ACTION/ACTION_i.txt and FOLDER/test/... of four
-// actions: walking, running, strolling and waving. Errors: what cannot be written.
+// actions: walking, running, strolling and waving. Errors: files that cannot be written.
 MaybeError WriteSyntheticClips(const std::string& folder, const SyntheticClipOptions& options);
 
-// Synthetic groups of three who stand and talk in turns, with the truth of who speaks:
-// for social states, their statistics and forecasts of groups without any push.
+// Synthetic groups of three people who stand and talk in turns, with the true speaker, for tests of
+// social states, their statistics, and forecasts of groups without pushes.
 //
 //   who speaks   a Markov chain from frame to frame: a turn, of 2 s on average, ends in a pause, in
 //                which nobody speaks, with probability 0.4, otherwise one of the other two speaks;
 //                after a pause, of 1 s on average, any of the three does
-//   states       speak; listen, where somebody else speaks; rest, where nobody does. One person's
-//                are a Markov chain too, which TurnTransitions knows
-//   motion       listeners look at who speaks, who speaks looks at one of them for a second on
-//                average, and in a pause everybody goes on looking; heads follow with 0.15 s, and
-//                shoulders go 0.7 of the way with 0.35 s. The speaker's arms rise and beat at about
-//                1.1 Hz, listeners nod; everybody sways, and has a size, place and liveliness of
-//                their own
+//   states       speak; listen, while another person speaks; rest, while nobody speaks. Those of
+//                one person are a Markov chain too (TurnTransitions)
+//   motion       listeners look at the speaker, the speaker looks at one of them for 1 s on
+//                average, and in a pause all keep looking; heads follow within 0.15 s, shoulders
+//                0.7 of the way within 0.35 s. The speaker's arms rise and beat at about 1.1 Hz,
+//                listeners nod; all sway, and differ in size, place and liveliness
 //
 // Nobody is pushed and no feet move.
 
@@ -80,7 +79,7 @@ Eigen::Matrix3d TurnTransitions();
 
 // Writes folder/manifest.json, folder/bvh/<id>_<n>.bvh and folder/states.csv, the states of people
 // (TurnState) and of the group (turn, pause); the manifest's key `synthetic` holds seed, names of
-// the states and TurnTransitions. Errors: what cannot be written.
+// the states and TurnTransitions. Errors: files that cannot be written.
 MaybeError WriteSyntheticTurns(const std::string& folder, const SyntheticTurnsOptions& options);
 
 }  // namespace pushid

@@ -13,7 +13,7 @@ MaybeError WriteNumericTable(const std::string& path, TableFormat format,
                              const NumericTable& table);
 
 // Writes all points of the motion (positions in motion.unit, millimetres when unset), atomically;
-// points not seen as empty cells.
+// missing points as empty cells.
 MaybeError WriteTrc(const std::string& path, const PointMotion& motion);
 
 }  // namespace pushid

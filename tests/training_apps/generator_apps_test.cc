@@ -170,7 +170,6 @@ TEST_F(GeneratorAppTest, MistakesAreNamed) {
   EXPECT_TRUE(Refused(Generate({}), {"pushid-train-generator --out"}));
   EXPECT_TRUE(Refused(Generate({"--samples=5"}), {"--samples is 5"}));
   EXPECT_TRUE(Refused(Generate({"--target_window=3"}), {"--target_window needs --samples"}));
-  EXPECT_TRUE(Refused(Generate({"--poses_out=" + Path("x.txt")}), {".bvh or .csv"}));
 }
 
 TEST_F(GeneratorAppTest, AnotherSkeletonIsRefused) {
@@ -180,6 +179,7 @@ TEST_F(GeneratorAppTest, AnotherSkeletonIsRefused) {
   WriteText("clips/skeleton.json",
             skeleton.replace(skeleton.find(used), used.size(), "\"used\": [1, 3, 4]"));
   EXPECT_TRUE(Refused(Generate({}), {"3 particles", "the 4 particles of the generator"}));
+  EXPECT_TRUE(Refused(Generate({"--poses_out=" + Path("x.bvh")}), {"must end in .csv"}));
   EXPECT_TRUE(Refused(Generate({"--id=a"}), {"--id has no effect on a generator of particles"}));
 }
 

@@ -49,7 +49,6 @@ class Parameter(NamedTuple):
     value: float
     standard_error: float | None
     interval: tuple[float, float] | None
-    total: tuple[float, float] | None
     unit: str
     status: str
     shares: dict[str, float]

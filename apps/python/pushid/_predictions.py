@@ -50,7 +50,7 @@ class OnlinePredictor:
         return self._online.predict()
 
     def push(self, force, person=0):
-        """A push until the next frame, beside the recording's: [Fx, Fy, Mtheta, Mphi] in N and N m. Known to next alone."""
+        """Adds a push until the next frame to those of the recording: [Fx, Fy, Mtheta, Mphi] in N and N m. Only next uses it."""
         self._online.push(person, np.asarray(force, dtype=float))
 
     def next(self, frames):

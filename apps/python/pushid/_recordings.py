@@ -131,7 +131,7 @@ def estimate_push(recording, *, person=0, first_frame=-1, end_frame=-1, smoothin
 
 
 def findings(recordings):
-    """What cannot be right in recordings: pushes against the motion they made, masses, copies, ...; a fit warns of them.
+    """Contradictions in recordings: pushes that do not fit the motion, masses, copies, ...; a fit warns of them.
 
     A list of dicts: kind, recording, about (a person, or the copies), value and its unit, what it means, and advice.
     """

@@ -76,7 +76,7 @@ class CrossValidation(_Printed, list):
 
 
 class Result:
-    """The result of a fit. result["mu"] is a Parameter, and so is what is derived of several, as result["c_x"]; `json`
+    """The result of a fit. result["mu"] is a Parameter, as is a quantity derived from several, such as result["c_x"]; `json`
     holds everything, as the programs write it."""
 
     def __init__(self, model):
@@ -172,7 +172,7 @@ class Result:
         return self._part("horizon_check")
 
     def learn_forecasts(self, *, num_threads=1):
-        """Learns what predictions from first frames (`observed`) are put together by, on recordings left out in turn.
+        """Learns the rule and the bands of predictions after first frames (`observed`), on people left out in turn.
 
         Returns the JSON's part `forecasts`.
         """
