@@ -240,8 +240,8 @@ FirstFrames::FirstFrames(const IdentifiedModel& model, double tail,
       plain_(model, PeoplesParameters(model, recording), std::nullopt, recording),
       input_(ForecastFilter(model, tail, recording)),
       beside_(recording.hip.size(), Vector3<double>::Zero()) {
-  for (int n = 0; n < recording.num_people(); ++n) {
-    rollout_.push_back({Hip(n, plain_.State(n))});
+  for (const HipPath& hip : recording.hip) {
+    seen_.push_back({{0, hip[0], Vector3<double>::Zero()}});
   }
 }
 
@@ -257,54 +257,42 @@ void FirstFrames::Push(int person, const Vector4<double>& force) {
   if (input_) input_->Push(person, force);
 }
 
-void FirstFrames::Observe(SeenFrame frame) {
+void FirstFrames::Observe(const SeenFrame& frame) {
+  const int now = observed_++;
+  const int window =
+      std::max(1, static_cast<int>(std::lround(kErrorWindow / recording_->scene.dt)));
   std::vector<bool> seen;
   for (int n = 0; n < recording_->num_people(); ++n) seen.push_back(frame.Sees(n));
   plain_.Observe(frame.states, seen);
   if (input_) input_->Observe(frame.states, seen);
   for (int n = 0; n < recording_->num_people(); ++n) {
-    rollout_[n].push_back(Hip(n, plain_.State(n)));
-    if (!input_ || !seen[n] || !input_->status().ok) continue;
+    if (!seen[n]) continue;
+    std::deque<SeenHip>& hips = seen_[n];
+    hips.push_back({now, frame.hip[n], frame.hip[n] - Hip(n, plain_.State(n))});
+    while (hips[1].frame <= now - window) hips.pop_front();
+    if (!input_ || !input_->status().ok) continue;
     beside_[n] = frame.hip[n] - HipPosition(recording_->scene.people[n].body, input_->State(n).q);
   }
-  seen_.push_back(std::move(frame));
-}
-
-// Frame 0 always was.
-int FirstFrames::LastSeen(int person, int until) const {
-  while (until > 0 && !seen_[until - 1].Sees(person)) --until;
-  return until;
-}
-
-Vector3<double> FirstFrames::HipAt(int person, int frame) const {
-  return frame == 0 ? recording_->hip[person][0] : seen_[frame - 1].hip[person];
 }
 
 std::vector<Vector3<double>> FirstFrames::LastHips() const {
   std::vector<Vector3<double>> hips;
-  for (int n = 0; n < recording_->num_people(); ++n) {
-    hips.push_back(HipAt(n, LastSeen(n, observed() - 1)));
-  }
+  for (const std::deque<SeenHip>& of_one : seen_) hips.push_back(of_one.back().hip);
   return hips;
 }
 
 HipPath FirstFrames::Physics(int person, const RolloutPath<double>& rollout) const {
   const double dt = recording_->scene.dt;
-  const int window = std::max(1, static_cast<int>(std::lround(kErrorWindow / dt)));
-  const int last = LastSeen(person, observed() - 1);
-  const int before = LastSeen(person, std::max(0, last - window));
-  const auto error = [&](int frame) -> Vector3<double> {
-    if (frame == 0) return Vector3<double>::Zero();
-    return HipAt(person, frame) - rollout_[person][frame];
-  };
-  const Vector3<double> off = error(last);
+  const SeenHip &before = seen_[person].front(), &last = seen_[person].back();
   Vector3<double> velocity = Vector3<double>::Zero();
-  if (last > before) velocity = (off - error(before)) / ((last - before) * dt);
+  if (last.frame > before.frame) {
+    velocity = (last.error - before.error) / ((last.frame - before.frame) * dt);
+  }
   HipPath path;
   for (int t = 1; t < rollout.num_frames(); ++t) {
-    const double ahead = (observed() - 1 + t - last) * dt;
+    const double ahead = (observed() - 1 + t - last.frame) * dt;
     const double reach = kErrorTime * (1.0 - std::exp(-ahead / kErrorTime));
-    path.push_back(Hip(person, rollout.At(t, person)) + off + reach * velocity);
+    path.push_back(Hip(person, rollout.At(t, person)) + last.error + reach * velocity);
   }
   return path;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <iterator>
 #include <optional>
 #include <vector>
@@ -101,12 +102,12 @@ class FirstFrames {
 
   // Pushes a person until the next frame, beside the recording's pushes: N, N m.
   void Push(int person, const Vector4<double>& force);
-  // The next frame; the first is frame 1. It takes as long however many were seen.
-  void Observe(SeenFrame frame);
-  int observed() const { return static_cast<int>(seen_.size()) + 1; }  // with frame 0
-  double seconds() const;                                              // after frame 0
+  // The next frame; the first is frame 1. It takes as long, and as much memory, however many were
+  // seen.
+  void Observe(const SeenFrame& frame);
+  int observed() const { return observed_; }  // with frame 0
+  double seconds() const;                     // after frame 0
   bool HasInput() const { return input_.has_value(); }
-  const std::vector<SeenFrame>& seen() const { return seen_; }  // from frame 1 on
   // The places where hips were seen last, by person.
   std::vector<Vector3<double>> LastHips() const;
 
@@ -114,17 +115,21 @@ class FirstFrames {
   TwoForecasts Forecasts(int ahead, bool physics = true) const;
 
  private:
-  int LastSeen(int person, int until) const;
-  Vector3<double> HipAt(int person, int frame) const;
+  // A hip that was seen, and how far it was from the rollout's.
+  struct SeenHip {
+    int frame;
+    Vector3<double> hip, error;
+  };
   HipPath Physics(int person, const RolloutPath<double>& rollout) const;
   Vector3<double> Hip(int person, const PendulumState<double>& state) const;  // of the rollout
 
   const PendulumRecording* recording_;
   bool rod_moves_;
   SceneFilter plain_;  // the rollout
-  HipPaths rollout_;   // its hips at the frames seen
   std::optional<SceneFilter> input_;
-  std::vector<SeenFrame> seen_;
+  int observed_ = 1;
+  // By person: the last hip, and those before it until the first that is kErrorWindow older.
+  std::vector<std::deque<SeenHip>> seen_;
   std::vector<Vector3<double>> beside_;  // by person: hip less the filter's, where last seen
 };
 

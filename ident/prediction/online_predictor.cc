@@ -28,6 +28,7 @@ OnlinePredictor::OnlinePredictor(const IdentifiedModel& model, const PendulumRec
       recording_(&recording),
       use_(use),
       num_frames_(num_frames),
+      off_(recording.num_people(), Eigen::Vector2d::Zero()),
       frames_(std::make_unique<FirstFrames>(model, model.forecasts->tail, recording)) {
   if (num_frames != kEndless) rollout_ = pushid::Predict(model, recording, num_frames);
 }
@@ -46,8 +47,19 @@ Result<OnlinePredictor> OnlinePredictor::Make(const IdentifiedModel& model,
   return Result<OnlinePredictor>(std::move(predictor));
 }
 
-void OnlinePredictor::Observe(SeenFrame frame) {
-  if (num_frames_ == kEndless || observed() < num_frames_) frames_->Observe(std::move(frame));
+void OnlinePredictor::Observe(const SeenFrame& frame) {
+  const int t = observed();
+  if (num_frames_ != kEndless && t >= num_frames_) return;
+  frames_->Observe(frame);
+  if (num_frames_ == kEndless || !rollout_.status.ok) return;
+  for (int n = 0; n < recording_->num_people(); ++n) {
+    PendulumState<double>& state = rollout_.path.At(t, n);
+    off_[n].setZero();
+    if (frame.Sees(n)) off_[n] = (frame.states[n].q - state.q).tail<2>();
+    state.q = frame.states[n].q;
+    state.qd = frame.states[n].qd;
+    rollout_.hip[n][t] = frame.hip[n];
+  }
 }
 
 std::optional<double> OnlinePredictor::Share(const TwoForecasts& two) const {
@@ -64,28 +76,16 @@ HipPaths OnlinePredictor::Next(int ahead) const {
 void OnlinePredictor::SetForecast(const TwoForecasts& two, double input_share,
                                   Prediction* prediction) const {
   const HipPaths hips = Blended(input_share, two.physics, two.input);
-  const std::vector<SeenFrame>& seen = frames_->seen();
   const int from = observed();
   const double dt = recording_->scene.dt;
   for (int n = 0; n < recording_->num_people(); ++n) {
-    // The error of the lean, where it was seen.
-    Eigen::Vector2d off = Eigen::Vector2d::Zero();
-    if (seen.back().Sees(n)) {
-      off = (seen.back().states[n].q - prediction->path.At(from - 1, n).q).tail<2>();
-    }
-    for (int t = 1; t < num_frames_; ++t) {
+    for (int t = from; t < num_frames_; ++t) {
       PendulumState<double>& state = prediction->path.At(t, n);
       Vector3<double>& hip = prediction->hip[n][t];
-      if (t < from) {
-        state.q = seen[t - 1].states[n].q;
-        state.qd = seen[t - 1].states[n].qd;
-        hip = seen[t - 1].hip[n];
-        continue;
-      }
       hip = hips[n][t - from];
       // The rollout's lean, to which it comes back as an error of velocity dies out, and the
       // filter's.
-      state.q.tail<2>() += std::exp(-(t - from + 1) * dt / kErrorTime) * off;
+      state.q.tail<2>() += std::exp(-(t - from + 1) * dt / kErrorTime) * off_[n];
       if (input_share > 0.0) {
         state.q.tail<2>() +=
             input_share * (two.input_path.At(t - from + 1, n).q - state.q).tail<2>();

@@ -41,7 +41,7 @@ class OnlinePredictor {
   // Hips to come know of it; lean, forces and steps of Predict do not.
   void Push(int person, const Vector4<double>& force) { frames_->Push(person, force); }
   // The next frame, frame 1 first; nothing once all frames were seen.
-  void Observe(SeenFrame frame);
+  void Observe(const SeenFrame& frame);
   int observed() const { return frames_->observed(); }  // with frame 0
   // A prediction without bands, which take longer than all the rest.
   Prediction Predict() const;
@@ -61,7 +61,8 @@ class OnlinePredictor {
   const PendulumRecording* recording_;
   ForecastUse use_;
   int num_frames_;
-  Prediction rollout_;  // of all frames
+  Prediction rollout_;                // of all frames; those seen are as they were
+  std::vector<Eigen::Vector2d> off_;  // by person: seen lean less the rollout's at the last frame
   std::unique_ptr<FirstFrames> frames_;
 };
 

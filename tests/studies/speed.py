@@ -48,6 +48,8 @@ ROWS = [
     ("the same of 10,000 who do not touch", ["CrowdSecondWithoutContact/people:10000/real_time"]),
     ("learning from first frames: one frame / a prediction after 30 / a whole recording",
      ["OnlineObserve/1", "OnlinePredict/1", "OnlineRecording"]),
+    ("without an end: a frame and the second after it, when 20 / 2,000 / 20,000 were seen",
+     [f"OnlineFrameAfter/{n}" for n in (20, 2000, 20000)]),
     ("reading a BVH file / C3D / TRC / CSV", [f"BM_Read{f}" for f in ("BvhHipAndAnkles", "C3d", "Trc", "Csv")]),
 ]
 

@@ -2,6 +2,7 @@
 #include "ident/prediction/online_predictor.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <cmath>
 
@@ -60,6 +61,37 @@ TEST_F(OnlinePredictorTest, PhysicsIsTheRolloutMovedOn) {
     const Vector3<double> expected = rollout.hip[0][t] + error(19) + reach * velocity;
     EXPECT_LT((prediction.hip[0][t] - expected).norm(), 1e-9) << t;
   }
+}
+
+// A gap longer than the window over which errors of velocity are taken: the last frame before it.
+TEST_F(OnlinePredictorTest, ErrorsOfVelocityReachOverAGap) {
+  PendulumRecording r = recordings_[2];
+  r.weight = {std::vector<double>(r.num_frames(), 1.0)};
+  for (int t = 9; t < 18; ++t) r.weight[0][t] = 0.0;  // and 20, the last
+  r.weight[0][20] = 0.0;
+  const Prediction rollout = Predict(model_, r);
+  const auto error = [&](int t) -> Vector3<double> { return r.hip[0][t] - rollout.hip[0][t]; };
+  const Vector3<double> velocity = (error(19) - error(8)) / (11.0 / 60.0);
+  const Prediction prediction = PredictFrom(model_, r, 21, 0, ForecastUse::kPhysics).value();
+  for (int t = 21; t < r.num_frames(); ++t) {
+    const double reach = 0.3 * (1.0 - std::exp(-(t - 19) / 60.0 / 0.3));
+    const Vector3<double> expected = rollout.hip[0][t] + error(19) + reach * velocity;
+    EXPECT_LT((prediction.hip[0][t] - expected).norm(), 1e-9) << t;
+  }
+}
+
+// A controller runs for days.
+TEST_F(OnlinePredictorTest, MemoryDoesNotGrowWithTheFramesSeen) {
+  const PendulumRecording& r = recordings_[0];
+  auto endless = OnlinePredictor::Make(model_, r, OnlinePredictor::kEndless);
+  const SeenFrame last = FrameAt(r, r.num_frames() - 1);
+  const auto after = [&](int frames) {
+    for (int t = 0; t < frames; ++t) endless.value().Observe(last);
+    EXPECT_FALSE(endless.value().Next(1).empty());
+    return mallinfo2().uordblks;  // bytes
+  };
+  const size_t before = after(1000);
+  EXPECT_LT(after(10000), before + 10000);
 }
 
 // Window after window without an end: each prediction is that of Predict.
