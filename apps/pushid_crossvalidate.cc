@@ -79,13 +79,10 @@ Candidates CandidatesOf(const Setups& setups,
 
 using Predictors = std::vector<Predictor>;
 
-// With observed frames, the restarted model replaces ridge regression and template, which cannot
-// use them.
-void AddBaselines(const FitOptions& options, Predictors* predictors) {
+// Ridge regression and template are left out with observed frames, which they cannot use.
+void AddBaselines(Predictors* predictors) {
   const int observed = ObservedFrames();
-  if (observed > 0) {
-    predictors->push_back(ModelPredictor("re-anchored", options, observed, FramesUse::kReanchored));
-  } else {
+  if (observed == 0) {
     predictors->push_back(RidgePredictor());
     predictors->push_back(TemplatePredictor());
   }
@@ -99,8 +96,7 @@ Predictors MakePredictors(const Candidates& candidates) {
   Predictors predictors;
   const int observed = ObservedFrames();
   for (const auto& [name, candidate] : candidates) {
-    predictors.push_back(
-        ModelPredictor(name, candidate, observed, FramesUse::kForecast, ForecastUseFlag()));
+    predictors.push_back(ModelPredictor(name, candidate, observed, ForecastUseFlag()));
   }
   if (FLAGS_bands) {
     BandOptions asked;
@@ -108,7 +104,7 @@ Predictors MakePredictors(const Candidates& candidates) {
     predictors.push_back(
         BandPredictor(candidates[0].first + ", bands", candidates[0].second, asked));
   }
-  if (FLAGS_yardsticks) AddBaselines(candidates[0].second, &predictors);
+  if (FLAGS_yardsticks) AddBaselines(&predictors);
   return predictors;
 }
 

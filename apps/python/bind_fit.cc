@@ -188,8 +188,7 @@ ScoresAndText CrossValidateAll(const std::vector<SharedRecording>& recordings,
   for (const auto& [name, given] : candidates) {
     const FitSetup setup = Setup(given);
     predictors.push_back(ModelPredictor(name, Unwrapped(setup.For(pendulums), Fault::kUsage),
-                                        observed, FramesUse::kForecast,
-                                        Named<ForecastUse>("forecast", forecast)));
+                                        observed, Named<ForecastUse>("forecast", forecast)));
   }
   if (baselines) {
     for (const Baseline& baseline : kBaselines) {

@@ -82,8 +82,6 @@ Metrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted, int
     sum[kMble] +=
         (BoneLengths(predicted[t]) - BoneLengths(recorded[t])).cwiseAbs().sum() / (kBodyJoints - 1);
     sum[kRelativeMpjpe] += (error.colwise() - hip).colwise().norm().mean();
-    const Pose carried = recorded[t].colwise() + hip;
-    sum[kBoundMpjpe] += (carried - recorded[t]).colwise().norm().mean();
   }
   sum /= end - first_frame;
   sum[kHipFde] = (predicted[end - 1] - recorded[end - 1]).col(0).norm();

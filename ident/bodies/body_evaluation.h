@@ -46,8 +46,6 @@ namespace pushid {
 //              frame 0 and at least 0; cm per frame. Mean over the contacts of a person, then over
 //              people.
 //   relative   MPJPE of joint - hip against recorded joint - hip (the hip counts as a joint, zero)
-//   bound      MPJPE of the recorded shape carried by the predicted hip: what is left when the
-//              shape is right
 // Means over recordings have standard errors over recordings, as those of hipADE.
 
 // Errors up to a time after the last shown frame, means over the frames until then and over people,

@@ -312,12 +312,6 @@ RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording&
   return score;
 }
 
-RecordingScore ScoreReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
-                               int observed) {
-  const Prediction prediction = PredictReanchored(model, recording, observed);
-  return ScoreOf(model, recording, prediction, observed);
-}
-
 const ScoreSummary& Evaluation::Baseline(const std::string& key) const {
   return std::find_if(baselines.begin(), baselines.end(),
                       [&key](const BaselineSummary& baseline) { return baseline.key == key; })
@@ -340,12 +334,6 @@ Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumReco
     evaluation.baselines.push_back(
         {baseline.name, baseline.key, summary(false, [&](const PendulumRecording& recording) {
            return ScoreHip(recording, baseline.predict(recording, observed), observed);
-         })});
-  }
-  if (observed > 0) {
-    evaluation.baselines.push_back(
-        {"re-anchored", "reanchored", summary(false, [&](const PendulumRecording& recording) {
-           return ScoreReanchored(model, recording, observed);
          })});
   }
   return evaluation;

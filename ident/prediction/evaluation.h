@@ -1,8 +1,7 @@
 // ident: prediction errors of a model and of the baselines.
 //
 // hipADE: mean over frames 1 .. T-1 and people of |hip predicted - hip measured|, in m; hipFDE: of
-// the last frame. Means are over recordings. Baselines: kBaselines, and where first frames were
-// seen the model started anew there.
+// the last frame. Means are over recordings. Baselines: kBaselines.
 //
 // Where the first k frames were seen (online_predictor.h), frame 0 among them, they are in every
 // prediction as they were. after_hipADE is the mean over the frames behind them, and the baselines
@@ -45,7 +44,6 @@ enum MetricId : int {
   kCrps = kInside50 + 2,
   kMpjpe,
   kRelativeMpjpe,
-  kBoundMpjpe,
   kMble,
   kFse,
   kNumMetrics
@@ -80,7 +78,6 @@ inline constexpr Metric kMetrics[kNumMetrics] = {
     {"crps", "m"},
     {"MPJPE", "m"},
     {"relative_MPJPE", "m"},
-    {"bound_MPJPE", "m", false},
     {"MBLE", "m", false},
     {"FSE", "cm", false},
 };
@@ -90,8 +87,7 @@ inline constexpr Metric kMetrics[kNumMetrics] = {
 MetricList TableMetrics(int observed);
 // Metrics of hips that files hold. bands: models have them, baselines do not.
 MetricList MetricsOf(int observed, bool bands);
-inline const MetricList kBodyMetrics = {kMpjpe,      kHipAde, kHipFde, kRelativeMpjpe,
-                                        kBoundMpjpe, kMble,   kFse};
+inline const MetricList kBodyMetrics = {kMpjpe, kHipAde, kHipFde, kRelativeMpjpe, kMble, kFse};
 
 // "hipADE 0.1 m, hipFDE 0.2 m"
 std::string MetricsText(const MetricList& metrics, const Metrics& values, int digits);
@@ -214,8 +210,6 @@ void ScoreDraws(const PendulumRecording& recording, const DrawnPaths& draws, Rec
 // learned forecasts.
 RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording,
                           int observed = 0, ForecastUse use = ForecastUse::kBoth);
-RecordingScore ScoreReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
-                               int observed);
 
 ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
                        std::vector<RecordingScore> scores, int observed = 0, bool bands = false,
@@ -229,7 +223,6 @@ struct BaselineSummary {
 
 struct Evaluation {
   ScoreSummary model;
-  // kBaselines, and where first frames were seen the model started there anew.
   std::vector<BaselineSummary> baselines;
   const ScoreSummary& Baseline(const std::string& key) const;  // one that there is
 };

@@ -12,8 +12,6 @@
 #include "ident/prediction/predicted_steps.h"
 #include "ident/problem/own_axes.h"
 #include "models/learned_terms.h"
-#include "models/rollout.h"
-#include "models/step.h"
 
 namespace pushid {
 namespace {
@@ -147,35 +145,6 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
     }
   }
   return WriteFileAtomically(path, text);
-}
-
-Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
-                             int observed) {
-  Prediction prediction = Predict(model, recording);
-  if (!prediction.status.ok || observed <= 1) return prediction;
-  const int people = recording.num_people(), from = observed - 1;
-  for (int n = 0; n < people; ++n) {
-    for (int t = 1; t <= from; ++t) {
-      PendulumState<double>& state = prediction.path.At(t, n);
-      state.q = recording.states[n][t].q;
-      state.qd = recording.states[n][t].qd;
-    }
-  }
-  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
-  ModelStep<double> forces(recording.scene, model.options, parameters);
-  prediction.status = RollOn<double>(recording.scene, &forces, from, &prediction.path);
-  if (!prediction.status.ok) return prediction;
-  for (int n = 0; n < people; ++n) {
-    // The rod of frame 0 puts the hip elsewhere than it was seen.
-    const auto tip = [&](int t) {
-      return HipPosition(prediction.BodyAt(recording.scene, t, n), prediction.path.At(t, n).q);
-    };
-    const Vector3<double> off = recording.hip[n][from] - tip(from);
-    for (int t = 1; t < recording.num_frames(); ++t) {
-      prediction.hip[n][t] = t <= from ? recording.hip[n][t] : Vector3<double>(tip(t) + off);
-    }
-  }
-  return prediction;
 }
 
 Warnings InputWarnings(const IdentifiedModel& model,

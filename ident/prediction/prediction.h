@@ -57,10 +57,6 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
 MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& recording,
                               const Prediction& prediction);
 
-// The model on from the state of the last frame seen.
-Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
-                             int observed);
-
 // Oddities of recordings that a model is to predict: other units than they say, people who stand
 // together under a model without contact, pushes beyond those of the fit. Sentences for
 // GroupedWarnings.

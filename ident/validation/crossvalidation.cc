@@ -204,9 +204,9 @@ ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, const P
 
 }  // namespace
 
-Predictor ModelPredictor(const std::string& name, FitOptions options, int observed, FramesUse use,
-                         ForecastUse forecast) {
-  const bool learns = observed > 0 && use == FramesUse::kForecast;
+Predictor ModelPredictor(const std::string& name, FitOptions options, int observed,
+                         ForecastUse use) {
+  const bool learns = observed > 0;
   options.num_threads = 1;  // the folds run in parallel
   const auto fit_and_score = [=](const std::vector<PendulumRecording>& recordings,
                                  const std::vector<int>& train, const std::vector<int>& test) {
@@ -219,9 +219,7 @@ Predictor ModelPredictor(const std::string& name, FitOptions options, int observ
     FoldPrediction prediction;
     prediction.behaviour = model.behaviour;
     for (int i : test) {
-      prediction.scores.push_back(use == FramesUse::kReanchored
-                                      ? ScoreReanchored(model, recordings[i], observed)
-                                      : ScoreModel(model, recordings[i], observed, forecast));
+      prediction.scores.push_back(ScoreModel(model, recordings[i], observed, use));
     }
     return prediction;
   };

@@ -68,13 +68,10 @@ PairedDifference Compare(const CrossValidation& a, const CrossValidation& b);
 
 // The predictors compared: an identified model, and the baselines that any model has to beat.
 
-enum class FramesUse { kForecast, kReanchored };
-
 // Fits the pendulum model to the training recordings, and to them what first frames tell. observed:
 // as in ScoreModel.
 Predictor ModelPredictor(const std::string& name, FitOptions options, int observed = 0,
-                         FramesUse use = FramesUse::kForecast,
-                         ForecastUse forecast = ForecastUse::kBoth);
+                         ForecastUse use = ForecastUse::kBoth);
 
 // A fit's rollouts with their predictive bands.
 Predictor BandPredictor(const std::string& name, FitOptions options, const BandOptions& bands);

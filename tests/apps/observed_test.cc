@@ -52,11 +52,11 @@ TEST_F(ObservedTest, FramesThatAreSeenHelp) {
     EXPECT_LT(json["mean"]["hipADE_m"].get<double>(), before);
     before = json["mean"]["hipADE_m"];
     EXPECT_TRUE(json["mean"].contains("inside90_x_share"));
-    for (const char* baseline : {"static", "constant_velocity", "kinematic", "reanchored"}) {
+    for (const char* baseline : {"static", "constant_velocity", "kinematic"}) {
       EXPECT_TRUE(json["baselines"][baseline]["mean"].contains("after_hipADE_m")) << baseline;
     }
     EXPECT_TRUE(Contains(run.out, "90 % bands hold"));
-    EXPECT_TRUE(Contains(run.out, "re-anchored"));
+    EXPECT_TRUE(Contains(run.out, "kinematic"));
   }
 }
 
@@ -74,8 +74,8 @@ TEST_F(ObservedTest, HeldOutRecordingsAreScoredBehindTheirFirstFrames) {
   Succeeded(RunApp("pushid-crossvalidate", {Recordings(), "--folds=3", "--repeats=1",
                                             "--observed=12", "--json_out=" + Path("cv.json")}));
   const auto json = Json(Path("cv.json"));
-  ASSERT_EQ(json["predictors"].size(), 5u);
-  EXPECT_EQ(json["predictors"][1]["name"], "re-anchored");
+  ASSERT_EQ(json["predictors"].size(), 4u);
+  EXPECT_EQ(json["predictors"][1]["name"], "static");
   for (const auto& predictor : json["predictors"]) {
     EXPECT_GT(predictor["mean"]["after_hipADE_m"].get<double>(), 0.0);
   }

@@ -114,32 +114,6 @@ TEST(Evaluation, BaselinesLookAtNothingUnseen) {
   EXPECT_NEAR(ConstantVelocityBaseline(r, 20)[0][20].x(), 0.01 * 18 * 18 + 2 * 0.35, 1e-12);
 }
 
-// The model's own motion goes on from any of its frames as it did.
-TEST(Evaluation, ReanchoredMotionIsTheMotion) {
-  for (const Stance stance : {Stance::kSlide, Stance::kSteps}) {
-    SyntheticOptions study = TinyStudy();
-    if (stance == Stance::kSteps) study.parameters = PublishedStanceParameters();
-    study.model.stance = stance;
-    IdentifiedModel model;
-    model.options = study.model;
-    model.parameters = study.parameters;
-    for (PendulumRecording& recording : MakePendulums(study)) {
-      const Prediction whole = Predict(model, recording);
-      recording.hip = whole.hip;
-      for (int t = 0; t < recording.num_frames(); ++t) {
-        recording.states[0][t] = whole.path.At(t, 0);
-      }
-      EXPECT_EQ(PredictReanchored(model, recording, 1).hip, whole.hip);
-      const Prediction again = PredictReanchored(model, recording, 12);
-      ASSERT_TRUE(again.status.ok);
-      // How much standing feet have let go is not measured; Predict's own state is taken.
-      for (int t = 0; t < recording.num_frames(); ++t) {
-        EXPECT_LT((again.hip[0][t] - whole.hip[0][t]).norm(), 1e-12) << t;
-      }
-    }
-  }
-}
-
 TEST(Evaluation, TooManyFirstFramesAreRefusedByName) {
   const std::vector<PendulumRecording> recordings = {Parabola("a", 30), Parabola("b", 11)};
   EXPECT_FALSE(CheckObserved(recordings, 10));
