@@ -86,8 +86,7 @@ void AddBaselines(Predictors* predictors) {
     predictors->push_back(RidgePredictor());
     predictors->push_back(TemplatePredictor());
   }
-  for (const Baseline& baseline : kBaselines) {
-    if (baseline.needs_frames && observed == 0) continue;
+  for (const Baseline& baseline : Baselines(observed)) {
     predictors->push_back(BaselinePredictor(baseline, observed));
   }
 }

@@ -191,8 +191,7 @@ ScoresAndText CrossValidateAll(const std::vector<SharedRecording>& recordings,
                                         observed, Named<ForecastUse>("forecast", forecast)));
   }
   if (baselines) {
-    for (const Baseline& baseline : kBaselines) {
-      if (baseline.needs_frames && observed == 0) continue;
+    for (const Baseline& baseline : Baselines(observed)) {
       predictors.push_back(BaselinePredictor(baseline, observed));
     }
   }

@@ -60,9 +60,9 @@ std::string Spaced(std::string name) {
 
 // Metrics of groups, where there are any.
 std::string GroupsText(const BodyEvaluation& evaluation) {
-  std::vector<GroupMetricsRow> rows;
+  NamedValues<GroupMetrics> rows;
   for (const auto& [name, summary] : evaluation) {
-    if (summary.groups) rows.push_back({Spaced(name), &*summary.groups});
+    if (summary.groups) rows.emplace_back(Spaced(name), &*summary.groups);
   }
   return rows.empty() ? "" : "\n" + GroupMetricsText(rows);
 }

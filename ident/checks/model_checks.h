@@ -1,6 +1,6 @@
-// ident: what a finished model is asked: how wide its intervals are by other means (profiles,
-// bootstrap), what fewer frames would have made of it, and what to record next. pushid-check asks a
-// model's file.
+// ident: checks of a finished model: its intervals by other methods (profiles, bootstrap), its
+// parameters from fewer frames, and which push to record next. pushid-check runs them on a model's
+// file.
 #pragma once
 
 #include <functional>

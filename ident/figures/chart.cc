@@ -106,8 +106,7 @@ class Panel {
     for (const ChartBar& bar : chart_.bars) {
       const double from = Inside(bar.from), to = Inside(bar.to), y = y_(bar.row);
       const double height = chart_.bar * chart_.row;
-      svg_.Rect({std::min(from, to), y - 0.5 * height, std::abs(to - from), height}, bar.look,
-                bar.tooltip);
+      svg_.Rect({std::min(from, to), y - 0.5 * height, std::abs(to - from), height}, bar.look);
     }
     for (double level : chart_.levels) svg_.Line(left_, y_(level), right_, y_(level), kLimitLook);
     for (double mark : chart_.marks) svg_.Line(x_(mark), top_, x_(mark), bottom_, kMarkLook);
@@ -282,8 +281,7 @@ double EntryWidth(const LegendEntry& entry) {
   return 44 + 6.6 * static_cast<double>(entry.name.size());
 }
 
-}  // namespace
-
+// Height of a panel that is drawn so wide.
 double HeightOf(const Chart& chart, double width) {
   // Panels are lower where they are narrower; strips of a row or two keep their height.
   if (chart.y_categories.empty())
@@ -291,6 +289,8 @@ double HeightOf(const Chart& chart, double width) {
   const Margins margins(chart, width);
   return margins.top + margins.bottom + chart.row * static_cast<double>(chart.y_categories.size());
 }
+
+}  // namespace
 
 double LegendWidth(const std::vector<LegendEntry>& entries) {
   double width = 0.0;

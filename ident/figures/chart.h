@@ -50,7 +50,7 @@ struct ChartLane {
 // Along x, in a row of y_categories.
 struct ChartBar {
   double row = 0.0, from = 0.0, to = 0.0;
-  std::string look, tooltip = {};
+  std::string look;
 };
 
 struct Chart {
@@ -92,9 +92,6 @@ struct Figure {
   std::vector<Chart> panels;
   std::string heading = {};  // above everything; may be empty
 };
-
-// Height of a panel that is drawn so wide.
-double HeightOf(const Chart& chart, double width);
 
 // Draws a panel as a picture of its own, as wide as wanted.
 SvgPicture DrawPanel(const Chart& chart);

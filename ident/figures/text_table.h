@@ -65,6 +65,38 @@ class TextTable {
   std::vector<bool> left_;
 };
 
+// Values side by side, each with the name of its column.
+template <typename Value>
+using NamedValues = std::vector<std::pair<std::string, const Value*>>;
+
+// A table whose columns are named values, and whose rows are the same figure of each.
+template <typename Value>
+class ColumnTable {
+ public:
+  ColumnTable(const std::string& title, NamedValues<Value> columns)
+      : columns_(std::move(columns)), table_(Header(title, columns_)) {}
+
+  // cell: the text of a value.
+  template <typename Cell>
+  void Add(const std::string& title, const Cell& cell) {
+    std::vector<std::string> row = {title};
+    for (const auto& [name, value] : columns_) row.push_back(cell(*value));
+    table_.Add(std::move(row));
+  }
+  std::string ToString() const { return table_.ToString(); }
+
+ private:
+  static std::vector<std::string> Header(const std::string& title,
+                                         const NamedValues<Value>& columns) {
+    std::vector<std::string> header = {title};
+    for (const auto& [name, value] : columns) header.push_back(name);
+    return header;
+  }
+
+  NamedValues<Value> columns_;
+  TextTable table_;
+};
+
 // "3.2 +- 0.3"; without the error where that is not known.
 std::string WithError(double value, double error);
 

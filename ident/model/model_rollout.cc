@@ -113,7 +113,7 @@ std::optional<UsualPush> UsualOf(const std::vector<PendulumRecording>& recording
   return UsualPush{kind, Median(durations[kind]), Median(heights[kind]), Median(impulses[kind])};
 }
 
-// From a person's cart to the nearest other one, m; infinite for who is alone.
+// The distance from a person's cart to the nearest other one, m; infinite for a person alone.
 double Spacing(const Scene& scene, int person) {
   double nearest = INFINITY;
   for (int n = 0; n < scene.num_people(); ++n) {
@@ -124,8 +124,8 @@ double Spacing(const Scene& scene, int person) {
   return nearest;
 }
 
-// Everybody once, by id, in the order of the recordings: the body and feet of the first of them,
-// and the usual posture of all, because somebody may lean in one.
+// Adds each person once, by id, in the order of the recordings: with the body and feet of the first
+// recording and the median posture of all of them, because a person may lean in one.
 void AddPeople(const std::vector<PendulumRecording>& recordings, PushRange* range) {
   std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> leans;
   std::vector<std::string> ids;

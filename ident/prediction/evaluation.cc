@@ -173,6 +173,14 @@ HipPaths KinematicBaseline(const PendulumRecording& recording, int observed) {
   });
 }
 
+std::vector<Baseline> Baselines(int observed) {
+  std::vector<Baseline> baselines = {
+      {"static", "static", StaticBaseline},
+      {"constant velocity", "constant_velocity", ConstantVelocityBaseline}};
+  if (observed > 0) baselines.push_back({"kinematic", "kinematic", KinematicBaseline});
+  return baselines;
+}
+
 std::string Metric::Title() const {
   std::string title = std::string(name) + " " + unit;
   std::replace(title.begin(), title.end(), '_', ' ');
@@ -329,8 +337,7 @@ Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumReco
   evaluation.model = summary(observed > 0, [&](const PendulumRecording& recording) {
     return ScoreModel(model, recording, observed, use);
   });
-  for (const pushid::Baseline& baseline : kBaselines) {
-    if (baseline.needs_frames && observed == 0) continue;
+  for (const pushid::Baseline& baseline : Baselines(observed)) {
     evaluation.baselines.push_back(
         {baseline.name, baseline.key, summary(false, [&](const PendulumRecording& recording) {
            return ScoreHip(recording, baseline.predict(recording, observed), observed);

@@ -1,13 +1,13 @@
 // ident: prediction errors of a model and of the baselines.
 //
 // hipADE: mean over frames 1 .. T-1 and people of |hip predicted - hip measured|, in m; hipFDE: of
-// the last frame. Means are over recordings. Baselines: kBaselines.
+// the last frame. Means are over recordings.
 //
-// Where the first k frames were seen (online_predictor.h), frame 0 among them, they are in every
-// prediction as they were. after_hipADE is the mean over the frames behind them, and the baselines
-// go on from frame k - 1. Of predictions that are distributions (there, and bands of futures.h)
-// inside90_x and inside90_y are the share of the predicted frames in which the pushed person's hip
-// lies in the 90 % band, crps the mean of the CRPS of x and y: the lower, the better.
+// If the first k frames (including frame 0) were observed (online_predictor.h), every prediction
+// contains them as recorded, after_hipADE is the mean over the later frames, and baselines start
+// from frame k - 1. For predictions that are distributions (with observed frames, and the bands of
+// futures.h), inside90_x and inside90_y are the shares of predicted frames in which the pushed
+// person's hip lies in the 90 % band, and crps is the mean CRPS of x and y: lower is better.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,13 +29,13 @@
 
 namespace pushid {
 
-// The metrics of hips and of bodies, whose meaning bodies/body_evaluation.h has. A new metric is an
-// entry and a row here and its formula in ScoreHip or ScoreBodies; means, files, tables,
-// cross-validation and batches take it from there.
+// The metrics of hips, and those of bodies (defined in bodies/body_evaluation.h). A new metric is
+// an entry and a row here and its formula in ScoreHip or ScoreBodies; means, files, tables,
+// cross-validation and batches read it from this table.
 enum MetricId : int {
   kHipAde,
   kHipFde,
-  kAfterHipAde,  // behind first frames that were seen, and in each third of these
+  kAfterHipAde,  // after the observed frames, and in each third of the frames after them
   kFirstThird,
   kSecondThird,
   kLastThird,
@@ -82,8 +82,8 @@ inline constexpr Metric kMetrics[kNumMetrics] = {
     {"FSE", "cm", false},
 };
 
-// The metrics of tables of hips. observed: frames that were seen, 0: none. The first is the one
-// that predictors are compared by where there is room for one.
+// The metrics in tables of hips. observed: number of observed frames, 0: none. Predictors are
+// compared by the first one if there is room for only one.
 MetricList TableMetrics(int observed);
 // Metrics of hips that files hold. bands: models have them, baselines do not.
 MetricList MetricsOf(int observed, bool bands);
@@ -92,13 +92,12 @@ inline const MetricList kBodyMetrics = {kMpjpe, kHipAde, kHipFde, kRelativeMpjpe
 // "hipADE 0.1 m, hipFDE 0.2 m"
 std::string MetricsText(const MetricList& metrics, const Metrics& values, int digits);
 
-// Scores by label, and whose scores are independent of each other: the standard errors of
-// their means.
+// Means of scores by label, and their standard errors.
 //
-// A person answers every push with the same body and habits, and a model misses one person's
-// recordings alike. So where people were pushed more than once the clusters of a mean's error are
-// the pushed people, otherwise the recordings; within one person they are recordings, which says
-// nothing about anybody else. With G clusters and n scores,
+// A person responds to every push with the same body and habits, so a model's errors are similar in
+// all recordings of one person. If people were pushed more than once, the clusters of a standard
+// error are therefore the pushed people, otherwise the recordings. Within one person they are
+// recordings, and the error says nothing about other people. With G clusters and n scores,
 //   error = sqrt(G / (G - 1) * sum over clusters of (sum of (score - mean) / n)^2)
 // with Student's t of G - 1 degrees of freedom (CR1; covariance.h has the fit's).
 
@@ -112,13 +111,12 @@ LabelKeys UsualGroups();  // magnitude, subject, setting
 LabelKeys ParseLabelKeys(const std::string& list);
 std::string LabelKeysText(const LabelKeys& keys);
 
-// Error: a key that is not `subject` and that no recording has; not of the usual ones.
+// Error: a key other than `subject` that no recording has. The usual keys may be absent.
 MaybeError CheckGroups(const std::vector<PendulumRecording>& recordings, const LabelKeys& keys);
 
-// Predictions that ask no model.
-
-// observed: frames seen first, frame 0 among them; 0: until the last push ends, or the last frame
-// but ten (half of a short recording); of the static one frame 0 alone.
+// Predictions without a model. observed: frames seen first, frame 0 among them. 0: they begin at
+// the end of the last push, or ten frames before the recording ends (half of a short recording);
+// the static one begins at frame 0.
 HipPaths StaticBaseline(const PendulumRecording& recording, int observed = 0);
 // Every hip goes on from its last seen place with the velocity since the frame before.
 HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observed = 0);
@@ -130,13 +128,9 @@ struct Baseline {
   const char* name;
   const char* key;  // in files
   HipPaths (*predict)(const PendulumRecording&, int observed);
-  bool needs_frames;  // only where first frames were seen
 };
-inline constexpr Baseline kBaselines[] = {
-    {"static", "static", StaticBaseline, false},
-    {"constant velocity", "constant_velocity", ConstantVelocityBaseline, false},
-    {"kinematic", "kinematic", KinematicBaseline, true},
-};
+// The kinematic one is used only after observed frames.
+std::vector<Baseline> Baselines(int observed);
 
 // A prediction of a recording, of hips or of bodies.
 struct Score {
@@ -185,8 +179,8 @@ ScoreMeans MeansOf(const std::vector<PendulumRecording>& recordings, const Score
 struct ScoreSummary : ScoreMeans {
   std::vector<RecordingScore> recordings;
   PropagationSummary propagation;  // over recordings of more than one person
-  StepScore steps;                 // unknown where the model says nothing of them
-  int observed = 0;                // frames that were seen, where it was asked for
+  StepScore steps;                 // unknown if the model does not predict steps
+  int observed = 0;                // number of observed frames
   bool bands = false;              // true where bands were scored
 };
 
@@ -206,8 +200,8 @@ std::vector<StepPrediction> StepPredictions(const PendulumRecording& recording,
 // Bands of drawn paths.
 void ScoreDraws(const PendulumRecording& recording, const DrawnPaths& draws, RecordingScore* score);
 
-// A failed rollout is a named failure. observed: frames seen first, 0: none; the model must have
-// learned forecasts.
+// A rollout that fails is a score with a failure. observed: number of frames observed first, 0:
+// none; otherwise the model must have learned forecasts.
 RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording,
                           int observed = 0, ForecastUse use = ForecastUse::kBoth);
 

@@ -1,5 +1,4 @@
-// ident: how people answer ground that oscillates, frequency by frequency, measured and by the
-// model.
+// ident: the frequency response of people to ground that oscillates, measured and by the model.
 //
 // With U_k, Y_k the Fourier transforms of the segments k = 1 .. K,
 //   S_uu = sum |U_k|^2,   S_yy = sum |Y_k|^2,   S_yu = sum Y_k conj(U_k),
@@ -34,8 +33,8 @@ struct Segmenting {
 // The shortest period, at most half of the series, after which it repeats itself to 2 % of its
 // standard deviation (its first tenth is left out), in frames; 0: none.
 int PeriodOf(const std::vector<double>& series);
-// The input's periods, the first of them left out (the answer to it is not yet periodic), of two
-// half of it. frames 0: it does not repeat itself.
+// The periods of the input without the first one, in which the answer is not yet periodic; of two
+// periods half of the first is left out. frames 0: the input does not repeat itself.
 Segmenting SegmentsOf(const std::vector<double>& input);
 
 struct CrossSpectra {

@@ -60,7 +60,6 @@ std::vector<ParameterSet<double>> FromCovariance(const FitResult& result,
 std::vector<ParameterSet<double>> FromBootstrap(const FitResult& result,
                                                 const BandOptions& options) {
   const Bootstrap& b = *options.bootstrap;
-  if (b.values.empty()) return {};
   Random random(options.seed);
   std::vector<ParameterSet<double>> sets;
   for (int s = 0; s < options.samples; ++s) {

@@ -1,18 +1,18 @@
 // ident: how far a prediction may be off: bands of hip paths over time.
 //
-// Two things make a person leave the predicted path. The parameters are known only so well: they
-// are drawn from the clustered covariance (multivariate Student's t of G - 1 degrees of freedom on
-// the fitted scale) or from the bootstrap's rows, and rolled out. And no two people, nor two
-// pushes, are alike, which no parameter tells: to every rollout the error path of a randomly drawn
-// fitted recording is added, per impulse over mass, so that a harder push errs farther; with fewer
-// than 19 of them spread by Student's t, as the largest of a few is no bound. (Without
-// the second part the bands say where the *mean* person goes: held out, 90 % bands of single people
-// held 83 % of the frames along the push and 68 % of those across.)
+// A person leaves the predicted path for two reasons. First, the parameters are uncertain: they are
+// drawn from the clustered covariance (multivariate Student's t with G - 1 degrees of freedom on
+// the fitted scale) or from the rows of a bootstrap, and rolled out. Second, no two people and no
+// two pushes are alike: to each rollout the error path of a randomly drawn fitted recording is
+// added, in proportion to the impulse over mass. If there are fewer than 19 error paths, they are
+// spread by Student's t, because the largest of a few is no bound. (Without the second part the
+// bands are those of the *mean* person: held-out 90 % bands of single people held 83 % of the
+// frames along the push and 68 % of those across.)
 //
-// The line of a band is the rollout at the estimate, which is what errors are quoted of; draws are
-// moved by what their median lies beside it. (Errors of the fitted recordings do not average to
-// zero where the model misses something, and paths bend where parameters are drawn: held out, the
-// median itself erred by 0.133 m, the rollout by 0.101 m.)
+// The middle of a band is the rollout at the estimate, which reported errors refer to; the draws
+// are shifted so that it is their median. (Errors of the fitted recordings do not average to zero
+// if the model misses something, and paths are nonlinear in the parameters: the unshifted median
+// erred by 0.133 m on held-out recordings, the rollout by 0.101 m.)
 #pragma once
 
 #include <cstdint>

@@ -12,8 +12,8 @@
 // anything is seen the prediction is that of Predict, to the bit. Every forecast needs that
 // rollout: where it leaves the domain, nothing is predicted.
 //
-// A controller that runs on and on makes it kEndless, tells what it measures of pushes by Push, and
-// asks for the next frames alone by Next, whose cost does not depend on how many were seen.
+// A controller without a last frame makes the predictor with kEndless, reports measured pushes with
+// Push, and calls Next for the frames ahead; its cost does not depend on the number of frames seen.
 #pragma once
 
 #include <memory>
@@ -37,16 +37,16 @@ class OnlinePredictor {
                                       const PendulumRecording& recording, int num_frames,
                                       ForecastUse use = ForecastUse::kBoth);
 
-  // Pushes a person from the last frame until the next one, beside the recording's pushes: N, N m.
-  // Hips to come know of it; lean, forces and steps of Predict do not.
+  // Pushes a person from the last frame until the next one, in addition to the recording's pushes:
+  // N, N m. It changes the predicted hips, but not the lean, forces and steps of Predict.
   void Push(int person, const Vector4<double>& force) { frames_->Push(person, force); }
   // The next frame, frame 1 first; nothing once all frames were seen.
   void Observe(const SeenFrame& frame);
   int observed() const { return frames_->observed(); }  // with frame 0
-  // A prediction without bands, which take longer than all the rest.
+  // A prediction without bands, which take longer to compute than all other parts.
   Prediction Predict() const;
-  // Everybody's hips in so many frames after the last; none where forecasts leave the domain. They
-  // are those of Predict.
+  // The hips of all people in the next `ahead` frames, equal to those of Predict; empty if the
+  // forecasts leave the domain.
   HipPaths Next(int ahead) const;
   // The distribution of the hips behind those seen, in a prediction that did not fail.
   HipDistribution Distribution(const Prediction& prediction) const;

@@ -137,12 +137,7 @@ double JackknifeError(const std::vector<StepPrediction>& predictions,
     }
     left_out.push_back(score(others));
   }
-  const double n = static_cast<double>(left_out.size());
-  if (n < 2.0) return 0.0;
-  double mean = 0.0, sum = 0.0;
-  for (double value : left_out) mean += value / n;
-  for (double value : left_out) sum += (value - mean) * (value - mean);
-  return std::sqrt((n - 1.0) / n * sum);
+  return (static_cast<double>(left_out.size()) - 1.0) * MeanOf(left_out).error;
 }
 
 std::vector<StepFifth> Fifths(std::vector<StepPrediction> predictions) {
@@ -158,7 +153,6 @@ std::vector<StepFifth> Fifths(std::vector<StepPrediction> predictions) {
     fifth.observed += predictions[i].stepped ? 1.0 : 0.0;
   }
   for (StepFifth& fifth : fifths) {
-    if (fifth.tracks == 0) continue;
     fifth.predicted /= fifth.tracks;
     fifth.observed /= fifth.tracks;
   }
@@ -224,59 +218,47 @@ std::string StepProbabilityText(const StepProbability& p) {
   return text + ".";
 }
 
-TextTable StepScoresTable(const NamedStepScores& scores) {
-  std::vector<std::string> header = {"who steps"};
-  NamedStepScores known;
+std::string StepScoresText(NamedValues<StepScore> scores) {
+  scores.erase(std::remove_if(scores.begin(), scores.end(),
+                              [](const auto& score) { return !score.second->known(); }),
+               scores.end());
+  if (scores.empty()) return "";
   size_t fifths = 0;
+  int people = 0;
+  bool feet_step = false;
   for (const auto& [name, score] : scores) {
-    if (!score->known()) continue;
-    known.emplace_back(name, score);
-    header.push_back(name);
     fifths = std::max(fifths, score->fifths.size());
+    people = std::max(people, score->people);
+    feet_step = feet_step || score->lift_off.people > 0;
   }
-  TextTable table(header);
-  if (known.empty()) return table;
-  const auto add = [&](const std::string& title, const auto& cell) {
-    std::vector<std::string> row = {title};
-    for (const auto& [name, score] : known) row.push_back(cell(*score));
-    table.Add(row);
-  };
-  add("tracks with a step / tracks", [](const StepScore& s) {
+  ColumnTable<StepScore> table("who steps", std::move(scores));
+  table.Add("tracks with a step / tracks", [](const StepScore& s) {
     return std::to_string(s.stepped) + " / " + std::to_string(s.tracks);
   });
   // The AUC of very few people who step, or who do not, depends on who stands where.
-  add("AUC", [](const StepScore& s) {
+  table.Add("AUC", [](const StepScore& s) {
     return std::min(s.stepped, s.tracks - s.stepped) < kFewForAuc ? std::string("- (too few)")
                                                                   : WithError(s.auc, s.auc_error);
   });
-  add("Brier score", [](const StepScore& s) { return WithError(s.brier, s.brier_error); });
+  table.Add("Brier score", [](const StepScore& s) { return WithError(s.brier, s.brier_error); });
   for (size_t i = 0; i < fifths; ++i) {
-    add("fifth " + std::to_string(i + 1) + " of P(step): mean -> share", [i](const StepScore& s) {
+    const std::string title = "fifth " + std::to_string(i + 1) + " of P(step): mean -> share";
+    table.Add(title, [i](const StepScore& s) {
       return i >= s.fifths.size()
                  ? std::string()
                  : Rounded(s.fifths[i].predicted, 2) + " -> " + Rounded(s.fifths[i].observed, 2);
     });
   }
-  const bool feet_step = std::any_of(known.begin(), known.end(), [](const auto& score) {
-    return score.second->lift_off.people > 0;
-  });
-  if (!feet_step) return table;
-  // "+0.05 s, mean |.| 0.11 s, 23 people; place off by 0.14 m"
-  add("first lift-off, predicted - recorded: median", [](const StepScore& s) -> std::string {
-    const LiftOffError& error = s.lift_off;
-    if (error.people == 0) return "";
-    return (error.median > 0.0 ? "+" : "") + Rounded(error.median, 2) + " s, mean |.| " +
-           Rounded(error.mean_absolute, 2) + " s, " + std::to_string(error.people) + " people" +
-           (error.landed > 0 ? "; place off by " + Rounded(error.place, 2) + " m" : "");
-  });
-  return table;
-}
-
-std::string StepScoresText(const NamedStepScores& scores) {
-  const TextTable table = StepScoresTable(scores);
-  if (table.empty()) return "";
-  int people = 0;
-  for (const auto& [name, score] : scores) people = std::max(people, score->people);
+  if (feet_step) {
+    // "+0.05 s, mean |.| 0.11 s, 23 people; place off by 0.14 m"
+    table.Add("first lift-off, predicted - recorded: median", [](const StepScore& s) {
+      const LiftOffError& error = s.lift_off;
+      if (error.people == 0) return std::string();
+      return (error.median > 0.0 ? "+" : "") + Rounded(error.median, 2) + " s, mean |.| " +
+             Rounded(error.mean_absolute, 2) + " s, " + std::to_string(error.people) + " people" +
+             (error.landed > 0 ? "; place off by " + Rounded(error.place, 2) + " m" : "");
+    });
+  }
   return table.ToString() + "+-: standard errors by leaving out each of " + std::to_string(people) +
          " people\n";
 }

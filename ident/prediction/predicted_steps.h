@@ -1,4 +1,4 @@
-// ident: which foot steps in a predicted path, when and how far, as recorded steps are told
+// ident: which foot steps in a predicted path, when and how far, in the form of recorded steps
 // (datasets/loading/foot_steps.h).
 #pragma once
 
@@ -97,10 +97,8 @@ StepScore ScoreSteps(const std::vector<StepPrediction>& predictions);
 // "P(step) = ...", its errors, and at which margin half of all people step.
 std::string StepProbabilityText(const StepProbability& probability);
 
-// A column for each named score that is known.
-using NamedStepScores = std::vector<std::pair<std::string, const StepScore*>>;
-TextTable StepScoresTable(const NamedStepScores& scores);
-// The table with what the errors are; empty where no score is known.
-std::string StepScoresText(const NamedStepScores& scores);
+// A table with a column for each score that is known, and a line on its errors; empty where no
+// score is known.
+std::string StepScoresText(NamedValues<StepScore> scores);
 
 }  // namespace pushid

@@ -1,4 +1,4 @@
-// ident: what a model says will happen in a scene, and the predictions that ask no model.
+// ident: the motion that a model predicts in a scene.
 #pragma once
 
 #include <string>
@@ -57,9 +57,8 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
 MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& recording,
                               const Prediction& prediction);
 
-// Oddities of recordings that a model is to predict: other units than they say, people who stand
-// together under a model without contact, pushes beyond those of the fit. Sentences for
-// GroupedWarnings.
+// Warnings about recordings that a model is to predict, for GroupedWarnings: units that look wrong,
+// people who touch although the model has no contact, pushes beyond those of the fit.
 Warnings InputWarnings(const IdentifiedModel& model,
                        const std::vector<PendulumRecording>& recordings);
 

@@ -15,9 +15,11 @@ constexpr double kQuiet = 10.0;    // N
 constexpr double kShortest = 0.1;  // s
 constexpr double kStill = 0.05;    // m/s
 
-enum Series : int { kPushed, kOthers, kAnswer, kNet };
+// The forces along the push that are causes, N.
+enum Series : int { kPushed, kOthers, kAnswer };
+using CauseForces = std::array<double, 3>;
 
-Cause CauseOf(const std::array<double, 4>& forces) {
+Cause CauseOf(const CauseForces& forces) {
   int largest = kPushed;
   for (int i : {kOthers, kAnswer}) {
     if (std::abs(forces[i]) > std::abs(forces[largest])) largest = i;
@@ -33,10 +35,10 @@ Series SeriesOf(Cause cause) {
   return cause == Cause::kPush ? kPushed : cause == Cause::kOwn ? kAnswer : kOthers;
 }
 
-// The cause of each frame. Runs of a cause that are shorter than kShortest belong to what was
-// before, unless a series of them lasts: then the cause that such a series has most of is that of
-// them all. A push is told however short it is.
-std::vector<Cause> CausesOf(const std::vector<std::array<double, 4>>& forces, double dt) {
+// The cause of each frame. Runs of a cause that are shorter than kShortest take the cause before
+// them; a series of such runs that lasts longer takes its own largest cause. A push counts however
+// short it is.
+std::vector<Cause> CausesOf(const std::vector<CauseForces>& forces, double dt) {
   std::vector<Cause> causes;
   for (const auto& frame : forces) causes.push_back(CauseOf(frame));
   const int frames = static_cast<int>(causes.size());
@@ -204,20 +206,21 @@ PropagationMean RatioMean(const std::vector<const PropagationScore*>& scores, in
 
 ForceStory StoryOf(const PendulumRecording& recording, const Prediction& prediction, int person) {
   const Eigen::Vector2d u = PushDirection(recording);
-  ForceStory story{person, {}, {}};
+  ForceStory story{person, {}};
+  std::vector<CauseForces> forces;
   for (int t = 0; t < prediction.path.num_frames(); ++t) {
     const NetForce<double>& force = prediction.forces.At(t, person);
     const auto along = [&](ForcePart part) { return force[part].head<2>().dot(u); };
     const double push = along(ForcePart::kPush) + along(ForcePart::kTail);
     const double others = along(ForcePart::kInteraction), net = force.Total().head<2>().dot(u);
-    story.forces.push_back({push, others, net - push - others, net});
+    forces.push_back({push, others, net - push - others});
   }
   const double dt = recording.scene.dt;
-  const std::vector<Cause> causes = CausesOf(story.forces, dt);
+  const std::vector<Cause> causes = CausesOf(forces, dt);
   for (int t = 0; t < static_cast<int>(causes.size()); ++t) {
     if (t == 0 || causes[t] != causes[t - 1]) story.moments.push_back({t, t, causes[t], 0, 0, ""});
     StoryMoment& moment = story.moments.back();
-    const double force = story.forces[t][SeriesOf(causes[t])];
+    const double force = forces[t][SeriesOf(causes[t])];
     moment.to = t + 1;
     moment.peak = std::max(moment.peak, std::abs(force));
     moment.impulse += dt * force;
@@ -275,23 +278,6 @@ ContactEnergyBalance BalanceContactEnergy(const RolloutPath<double>& path,
     (total < 0.0 ? balance.absorbed : balance.returned) += std::abs(total);
   }
   return balance;
-}
-
-const PropagationFigureInfo& Info(PropagationFigure figure) {
-  static const PropagationFigureInfo kInfo[kNumPropagationFigures] = {
-      {"onset_error_frames", "onset error, frames (who move in both)"},
-      {"onset_error_reached_frames", "  without the pushed person"},
-      {"onset_bias_frames", "  predicted - measured"},
-      {"missed_movers_share", "missed movers / movers"},
-      {"false_movers_share", "false movers / bystanders"},
-      {"slowness_measured_s_per_m", "slowness measured, s/m"},
-      {"slowness_predicted_s_per_m", "slowness predicted, s/m"},
-      {"momentum_passed_on_measured", "momentum passed on, measured"},
-      {"momentum_passed_on_predicted", "momentum passed on, predicted"},
-      {"contact_work_J", "work of contact per recording, J"},
-      {"contact_returned_share", "  share given back (restitution squared)"},
-  };
-  return kInfo[figure];
 }
 
 int OnsetFrame(const HipPath& hip) {

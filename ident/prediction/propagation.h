@@ -1,12 +1,12 @@
-// ident: what happens to one person of a prediction, in words (when the net force changes its main
-// part), what contact does to energy, and how a push travels through people.
+// ident: the forces on one person of a prediction in words, the energy balance of contact, and how
+// a push travels through people.
 //
-// Along the push, the net force has three causes: a push itself, what others do, and the person's
-// own answer (friction, balance and all that is fitted or learned of one person). The largest of
-// them tells a frame, where it is above 10 N; what others do is from behind where it goes along the
-// push and from in front where it goes against it, and named after the nearest person on that side.
-// A cause that lasts less than 0.1 s belongs to the one before, unless it is a push; where several
-// such follow each other for longer, the loudest of them tells all.
+// Along the push, the net force on a person has three causes: the push itself, other people, and
+// the person's own answer (friction, balance and all other terms of one person). The cause of a
+// frame is the largest of them, if it is above 10 N. The force of others comes from behind if it
+// acts along the push, otherwise from in front, and is named after the nearest person on that side.
+// A cause that lasts less than 0.1 s, unless it is a push, is replaced by the one before; a series
+// of such causes that lasts longer takes the cause with the largest summed force.
 #pragma once
 
 #include <array>
@@ -31,15 +31,13 @@ struct StoryMoment {
 struct ForceStory {
   int person = -1;
   std::vector<StoryMoment> moments;
-  // [frame]: push, others, own answer, net, N along the push.
-  std::vector<std::array<double, 4>> forces;
 };
 
 // The prediction must have stayed within its domain.
 ForceStory StoryOf(const PendulumRecording& recording, const Prediction& prediction, int person);
 
-// The story of the bystander with most to tell: first still, then pushed by the one behind, then by
-// the one in front, is more than being pushed alone. Person -1 where there is no bystander.
+// The story of the bystander with the most kinds of causes, of equal ones the one on whom others
+// act most. Person -1 where there is no bystander.
 ForceStory RichestStory(const PendulumRecording& recording, const Prediction& prediction);
 
 // "X-11: 0 s still; 0.42 s pushed from behind by X-18, up to 230 N (31 N s); ..."
@@ -122,13 +120,25 @@ struct PropagationFigureInfo {
   const char* key;    // in JSON, with the unit
   const char* title;  // in tables
 };
-const PropagationFigureInfo& Info(PropagationFigure figure);
+inline constexpr PropagationFigureInfo kPropagationFigures[kNumPropagationFigures] = {
+    {"onset_error_frames", "onset error, frames (who move in both)"},
+    {"onset_error_reached_frames", "  without the pushed person"},
+    {"onset_bias_frames", "  predicted - measured"},
+    {"missed_movers_share", "missed movers / movers"},
+    {"false_movers_share", "false movers / bystanders"},
+    {"slowness_measured_s_per_m", "slowness measured, s/m"},
+    {"slowness_predicted_s_per_m", "slowness predicted, s/m"},
+    {"momentum_passed_on_measured", "momentum passed on, measured"},
+    {"momentum_passed_on_predicted", "momentum passed on, predicted"},
+    {"contact_work_J", "work of contact per recording, J"},
+    {"contact_returned_share", "  share given back (restitution squared)"},
+};
 
 struct PropagationScore {
   std::vector<PersonPropagation> people;  // empty for a single person
   std::array<Ratio, kNumPropagationFigures> figures{};
 
-  // Sums only: what averages over repeats are made of.
+  // Adds and divides the sums of the figures, for averages over repeats.
   void Add(const PropagationScore& other);
   void Divide(double by);
 };

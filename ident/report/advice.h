@@ -1,4 +1,5 @@
-// ident: a command line that repeats a fit, with some flags changed: what advice consists of.
+// ident: advice after a fit: a sentence, and a command that repeats the fit with some flags
+// changed.
 //
 //   FitCommand("pushid-fit", model.provenance).Set("self_force", "linear").ToString()
 //   -> pushid-fit --recordings=M/manifest.json --preset=ldp --self_force=linear
@@ -27,8 +28,8 @@ class FitCommand {
     flags_[flag] = value;
     return *this;
   }
-  // One more item of a comma-separated list: the flag given twice would lose the first list. What
-  // is fixed is neither free nor pooled any more.
+  // Appends an item to a comma-separated list, because a flag that is given twice loses the first
+  // list. A parameter that becomes fixed is removed from the lists of free and pooled ones.
   FitCommand& Append(const std::string& flag, const std::string& item);
   // The list that Append would make.
   std::string Appended(const std::string& flag, const std::string& item) const;
@@ -38,19 +39,20 @@ class FitCommand {
 
  private:
   explicit FitCommand(std::string program) : program_(std::move(program)) {}
-  // Takes a parameter out of a list; without any left the list says none, or is gone.
+  // Takes a parameter out of a list; `without` replaces an empty list.
   void TakeOut(const std::string& flag, const std::string& name, const char* without);
   std::string program_;
   nlohmann::ordered_map<std::string, std::string> flags_;  // in the order they are printed
 };
 
-// An advised command as it is printed: with the model's file instead of FILE, where one keeps it.
+// An advised command as it is printed: with the name of the model's file, if there is one, for
+// FILE.
 std::string CommandFor(const Provenance& provenance, std::string command);
 // True for commands of pushid-check, which need the model's file.
 bool NamesModel(const std::string& command);
 
-// Rules from findings to next steps in plain words, the most pressing first: a pure function of a
-// fitted model. Commands repeat the settings of the fit.
+// The next steps that the findings of a fit suggest, the most pressing first: a pure function of
+// the fitted model. Commands repeat the settings of the fit.
 std::vector<Advice> Advise(const FittedModel& model);
 
 }  // namespace pushid

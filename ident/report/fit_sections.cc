@@ -60,27 +60,12 @@ std::string PreparationText(const std::map<std::string, std::string>& configurat
 
 }  // namespace
 
-ReportSection ShortSection(const FittedModel& model, const std::string& more) {
-  ReportSection section{"short", "In short"};
-  section.Say(GainsText(model.fit));
-  section.Say(BalanceText(model.fit));
-  section.Say(more);
-  section.Say("What to do next: " + (model.advice.empty() ? "predict a push that was not fitted."
-                                                          : model.advice.front().sentence));
-  section.Show("", ShortTable(model.fit));
-  TextTable legend({"name", "unit", "meaning"});
-  for (const Estimate& e : model.fit.estimates) {
-    const ParameterSpec* spec = model.fit.options.table.Find(e.name);
-    if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
-    legend.Add({e.name, e.unit == "1" ? "-" : e.unit, spec->meaning});
-  }
-  section.Show("what the names mean", legend);
-  return section;
-}
-
 ReportSection SummarySection(const FittedModel& model) {
   ReportSection section{"summary", "What was fitted"};
-  section.Say(model.fit.converged ? "The solve converged." : "The solve did NOT converge.");
+  const SolveStart* const best = model.fit.ok() ? &model.fit.starts[model.fit.best_start] : nullptr;
+  section.Say(model.fit.converged ? "The solve converged."
+              : best == nullptr   ? "The solve did NOT converge."
+                                  : "The solve did NOT converge: " + best->message);
   const FitOptions& o = model.fit.options;
   TextTable facts({"what", "value"});
   const bool may_lack = o.pool_by != kSubjectUnit && o.pool_by != kSettingLabel;
@@ -97,10 +82,9 @@ ReportSection SummarySection(const FittedModel& model) {
   facts.Add({"self force", SelfForceText(o.self_force, o.model.learned.get())});
   if (RodMoves(o.model)) facts.Add({"rod", RodName(o.model.learned->rod)});
   facts.Add({"interaction", InteractionText(o.model)});
-  if (model.fit.ok()) {
-    const SolveStart& best = model.fit.starts[model.fit.best_start];
-    facts.Add({"cost", Rounded(model.fit.cost, 6) + " after " +
-                           CountText(best.iterations, "iteration") + ": " + best.message});
+  if (best != nullptr) {
+    facts.Add({"cost",
+               Rounded(model.fit.cost, 6) + " after " + CountText(best->iterations, "iteration")});
   }
   const std::vector<RecordingDiagnostics>& recordings = model.fit.diagnostics.recordings;
   double explained = 0.0;

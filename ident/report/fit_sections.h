@@ -9,8 +9,6 @@
 namespace pushid {
 
 // A section with nothing to say is empty and left out.
-// Gains, what to do next and the values; more: a paragraph before what to do.
-ReportSection ShortSection(const FittedModel& model, const std::string& more = "");
 ReportSection SummarySection(const FittedModel& model);
 // Warnings: those of the fit, then findings about the recordings.
 std::vector<std::string> WarningTexts(const FitResult& result);

@@ -70,55 +70,14 @@ size_t ColumnOf(const FitResult& result, const std::string& name) {
 }
 
 // The assumption that makes up most of a squared total error; null: none does.
-const AssumptionTest* WidensMost(const ModelVerdict& verdict, size_t column, bool measured) {
+const AssumptionTest* WidensMost(const ModelVerdict& verdict, size_t column) {
   const AssumptionTest* most = nullptr;
   double widest = 0.0;
   for (const AssumptionTest& test : verdict.assumptions) {
-    if (measured && StatedErrorKey(test).empty()) continue;
     const double widens = test.Widens(column, test.stated);
     if (widens > widest) most = &test, widest = widens;
   }
   return most;
-}
-
-// "Measure better ...: a_x becomes identified where the height of the pushes is known to 0.01 m",
-// of estimates that are weak only because of what is taken as known; empty: nothing could be stated
-// better.
-std::string SharperText(const FitResult& result) {
-  const ModelVerdict& verdict = result.verdict;
-  if (verdict.fails() || !verdict.none_identified.empty()) return "";
-  const Uncertainty& u = result.uncertainty;
-  const bool few = u.about_people_like_them && u.num_people < kFewestPeople;
-  std::string text;
-  for (const Estimate& e : result.estimates) {
-    const ParameterSpec* const spec = result.options.table.Find(e.name);
-    const size_t column = ColumnOf(result, e.name);
-    const AssumptionTest* const most = WidensMost(verdict, column, true);
-    if (spec == nullptr || most == nullptr) continue;
-    if (e.status != EstimateStatus::kWeak || few || !Leads(e)) continue;
-    const double width = spec->prior ? spec->prior->sigma : spec->scale;
-    if (!IsNarrow(spec->transform, width, e.lower95, e.upper95)) continue;
-    // The largest of a half, a fifth and a tenth of what is stated by which it would be identified.
-    const Interval total = e.interval();
-    const double variance = total.standard_error * total.standard_error;
-    const double fitted = ToFitted(spec->transform, e.value);
-    for (double share : {0.5, 0.2, 0.1}) {
-      const double stated = share * most->stated;
-      const double left =
-          variance - most->Widens(column, most->stated) + most->Widens(column, stated);
-      const auto end = [&](double natural) {
-        const double half = ToFitted(spec->transform, natural) - fitted;
-        return ToNatural(spec->transform,
-                         fitted + std::sqrt(std::max(0.0, left / variance)) * half);
-      };
-      if (!IsNarrow(spec->transform, width, end(total.lower), end(total.upper))) continue;
-      text += (text.empty() ? "" : "; ") + e.name + " becomes identified where the " + most->name +
-              " is known to " + Rounded(stated, 2) + (most->unit.empty() ? "" : " " + most->unit) +
-              " (stated_errors: " + StatedErrorKey(*most) + ")";
-      break;
-    }
-  }
-  return text.empty() ? "" : "Measure better and state it in the manifest: " + text + ".";
 }
 
 // The intervals beside the one that decides: of the data alone, and of these people alone.
@@ -134,7 +93,7 @@ TextTable PartsTable(const FitResult& result) {
     };
     // "height of the pushes (63 %)"
     const size_t column = ColumnOf(result, row.name);
-    const AssumptionTest* const most = WidensMost(result.verdict, column, false);
+    const AssumptionTest* const most = WidensMost(result.verdict, column);
     std::string widened = "-";
     if (most != nullptr) {
       const double part = most->Widens(column, most->stated);
@@ -327,7 +286,6 @@ ReportSection ParameterSection(const FittedModel& model) {
       "constraint. Prior shift: how far prior and constraint together move the value, in "
       "standard errors of the data alone. Prior-held: the data account for less than half.",
       ErrorsText(model.fit), ConventionText(model.fit)};
-  section.Say(SharperText(model.fit));
   section.Show("", EstimateTable(model.fit));
   TextTable derived({"derived", ">value", ">std error", "95 % interval", "unit"});
   for (const Combination& c : model.fit.derived) {  // c_x, c_y and gains per mass

@@ -45,7 +45,7 @@ constexpr GainWords kGainWords[] = {
     {"c_x/M", "friction of the feet with a time constant of", " s", true},
 };
 
-// Settings in which a harder push does not move the line on farther.
+// The settings in which a harder push does not move the line farther.
 std::string NoFartherText(const Behaviour& b) {
   if (b.harder_moves_farther) return "";
   std::string where;
@@ -116,24 +116,20 @@ constexpr double kLargestFactor = 10.0;
 constexpr size_t kNamedSuspects = 3;
 
 struct Remedy {
-  const char* name;  // of an assumption
-  const char* key;   // among stated_errors; empty: not stated there
-  const char* text;
+  const char *name, *text;  // of an assumption
 };
 constexpr Remedy kRemedies[] = {
-    {"scale of the pushes", "push_scale",
-     "check the unit and the calibration of the force, and the masses"},
-    {"lag of the pushes", "push_lag_frames", "check the clocks of forces and cameras"},
-    {"height of the pushes", "push_height_m", "check at which height the pushes act"},
-    {"zero of the pushes", "push_zero_N", "check what the sensor reads before the push"},
-    {"masses", "mass", "check the masses, and the unit of the force"},
-    {"frame rate", "frame_rate", "check the frame rate"},
-    {"drift of the cameras", "drift_m",
-     "check whether positions drift, or people walk before the push"},
-    {"second pushes", "", "check whether people were pushed again after what was recorded"},
-    {"share of the masses in the carts", "", "try --body=anthropometric"},
-    {kStepName, "", "resample the motion (--resample_fps=240)"},
-    {kReactionDelayName, "reaction_delay_s", "try --delay=one"}};
+    {"scale of the pushes", "check the unit and the calibration of the force, and the masses"},
+    {"lag of the pushes", "check the clocks of forces and cameras"},
+    {"height of the pushes", "check at which height the pushes act"},
+    {"zero of the pushes", "check what the sensor reads before the push"},
+    {"masses", "check the masses, and the unit of the force"},
+    {"frame rate", "check the frame rate"},
+    {"drift of the cameras", "check whether positions drift, or people walk before the push"},
+    {"second pushes", "check whether people were pushed again after what was recorded"},
+    {"share of the masses in the carts", "try --body=anthropometric"},
+    {kStepName, "resample the motion (--resample_fps=240)"},
+    {kReactionDelayName, "try --delay=one"}};
 
 // The remedy for a quantity of the laboratory; null where the model has it as a parameter.
 const Remedy* FindRemedy(const AssumptionTest& test) {
@@ -633,11 +629,6 @@ std::string ModelVerdictText(const ModelVerdict& v, bool more, bool brief) {
          " of feet and hips (p = " + Rounded(v.p_motion, 2) + "; each after all tests, " +
          std::to_string(v.freedom) + " degrees of freedom; less than " + Rounded(kVerdictLevel, 2) +
          " contradicts); " + explains;
-}
-
-std::string StatedErrorKey(const AssumptionTest& test) {
-  const Remedy* const remedy = FindRemedy(test);
-  return remedy == nullptr ? "" : remedy->key;
 }
 
 TextTable AssumptionTable(const FitResult& result) {

@@ -14,18 +14,18 @@
 
 namespace pushid {
 
-// The end of a 95 % interval as it is shown: infinite where it tells nothing (of a positive value a
-// factor of more than 100 away, or with an interval over four orders of magnitude).
+// The end of a 95 % interval as it is shown: infinite if it bounds nothing (for a positive value:
+// if it is a factor of more than 100 away, or the interval spans four orders of magnitude).
 double ShownEnd(double value, double end, double other_end);
 // "[20, 42]", "[20, open]"; "undetermined" where both ends are open.
 std::string IntervalText(double value, double lower, double upper, int digits = 4);
 
-// Values of the free parameters and the intervals that decide; of many, those first that the
-// recordings tell something of.
+// Values of the free parameters with their deciding intervals; if there are many, the identified
+// ones come first and the prior-held ones last.
 TextTable ShortTable(const FitResult& result);
 // "Ankle stiffness 1.6 times m g l (1 is just enough to hold a pendulum upright), ..."
 std::string GainsText(const FitResult& result);
-// Why the fitted person does not come to rest; empty of one who does.
+// Why the fitted person does not come to rest; empty if the person does.
 std::string BalanceText(const FitResult& result);
 // The behaviour after a push, in words and settling simulation by settling simulation.
 std::string BehaviourText(const FitResult& result);
@@ -77,11 +77,8 @@ std::string ResamplingText(const Bootstrap& bootstrap);
 // The verdict on a model in words (uncertainty/model_verdict.h).
 
 // "The model check found no contradiction: ...", or "The model does not fit these recordings: ..."
-// with what to check or to try, or why nothing was checked. more: than was said before it.
+// with what to check or to try, or why nothing was checked. more: another finding stands before it.
 std::string ModelVerdictText(const ModelVerdict& verdict, bool more = false, bool brief = false);
-
-// Its name among a manifest's stated_errors; empty of what the laboratory does not measure.
-std::string StatedErrorKey(const AssumptionTest& test);
 
 // A row for each quantity that was taken as known: stated error, wanted value, test.
 TextTable AssumptionTable(const FitResult& result);

@@ -9,8 +9,7 @@
 //                same parts of the covariance as every other interval (covariance.h)
 //   p            of b = 0: the level at which the interval of b ends at 0
 //   Holm's p     corrected for all parameters of the contrast (Holm 1979), so that the chance of
-//   any
-//                false positive among them is at most the level
+//                any false positive among them is at most the level
 //
 // People who were recorded alone are judged by a t-test of their own fits instead (OwnEstimate),
 // which finds as many true differences as a test in two stages does, the joint fit half of them

@@ -76,7 +76,7 @@ Predictor ModelPredictor(const std::string& name, FitOptions options, int observ
 // A fit's rollouts with their predictive bands.
 Predictor BandPredictor(const std::string& name, FitOptions options, const BandOptions& bands);
 
-// One of kBaselines; nothing is fitted.
+// A baseline; nothing is fitted.
 Predictor BaselinePredictor(const Baseline& baseline, int observed = 0);
 
 // The mean displacement of the pushed hip by condition and frame, along the push, across and

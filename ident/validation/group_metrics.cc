@@ -190,15 +190,15 @@ nlohmann::ordered_json ToJson(const GroupMetrics& metrics) {
           {"missed_movers", onsets.missed_movers}};
 }
 
-TextTable GroupMetricsTable(const std::vector<GroupMetricsRow>& rows) {
+TextTable GroupMetricsTable(const NamedValues<GroupMetrics>& predictors) {
   const std::vector<std::string> header = {"groups",         "SSCP",         "changes",
                                            "NDMS",           "pushed named", "onset order",
                                            "onset error, s", "false movers", "missed movers"};
   TextTable table = TextTable::OfNumbers(header);
-  for (const GroupMetricsRow& row : rows) {
-    const SocialMetrics& social = row.metrics->social;
-    const OnsetMetrics& onsets = row.metrics->onsets;
-    table.Add({row.predictor, Cell(social.sscp), Cell(social.sscp_changes), Cell(social.ndms),
+  for (const auto& [predictor, metrics] : predictors) {
+    const SocialMetrics& social = metrics->social;
+    const OnsetMetrics& onsets = metrics->onsets;
+    table.Add({predictor, Cell(social.sscp), Cell(social.sscp_changes), Cell(social.ndms),
                std::to_string(onsets.pushed_named) + " of " + std::to_string(onsets.recordings),
                Cell(Share(onsets.in_order, onsets.pairs)),
                Cell(Share(onsets.error_sum, onsets.movers)), onsets.false_movers,
@@ -207,8 +207,10 @@ TextTable GroupMetricsTable(const std::vector<GroupMetricsRow>& rows) {
   return table;
 }
 
-std::string GroupMetricsText(const std::vector<GroupMetricsRow>& rows) {
-  return GroupMetricsTable(rows).ToString() + kGroupMetricsLegend + "\n";
+std::string GroupMetricsText(const NamedValues<GroupMetrics>& predictors) {
+  return GroupMetricsTable(predictors).ToString() +
+         "SSCP, changes (0: the same) and NDMS (1: the same) measure how people move and how often "
+         "they step, but not whether the right person does so in time; onsets measure only that.\n";
 }
 
 }  // namespace pushid

@@ -91,16 +91,9 @@ GroupMetrics CompareGroups(const std::vector<GroupMotion>& recorded,
 
 nlohmann::ordered_json ToJson(const GroupMetrics& metrics);
 
-// One predictor's groups.
-struct GroupMetricsRow {
-  std::string predictor;
-  const GroupMetrics* metrics;
-};
-TextTable GroupMetricsTable(const std::vector<GroupMetricsRow>& rows);
-// The table as text, with what the measures can see and what they cannot.
-std::string GroupMetricsText(const std::vector<GroupMetricsRow>& rows);
-inline constexpr char kGroupMetricsLegend[] =
-    "SSCP, changes (0: the same) and NDMS (1: the same) measure how people move and how often "
-    "they step, but not whether the right person does so in time; onsets measure only that.";
+// A row for each predictor.
+TextTable GroupMetricsTable(const NamedValues<GroupMetrics>& predictors);
+// The table, and a line on what the metrics can and cannot see.
+std::string GroupMetricsText(const NamedValues<GroupMetrics>& predictors);
 
 }  // namespace pushid

@@ -51,8 +51,7 @@ void Fields(JsonArchive& a, PropagationSummary& s) {
   PUSHID_FIELDS(a, s, movers, bystanders, missed_movers, false_movers);
   for (int i = 0; i < kNumPropagationFigures; ++i) {
     const PropagationMean& mean = s.figures[i];
-    a.OrNull(Info(static_cast<PropagationFigure>(i)).key,
-             mean.known() ? std::optional(mean) : std::nullopt);
+    a.OrNull(kPropagationFigures[i].key, mean.known() ? std::optional(mean) : std::nullopt);
   }
   a.OrNull("speed_measured_m_per_s", Speed(s.figures[kSlownessMeasured]));
   a.OrNull("speed_predicted_m_per_s", Speed(s.figures[kSlownessPredicted]));
@@ -110,10 +109,10 @@ std::string ScoreText(double value, double error, const MeanScore& mean) {
   return Rounded(value, 3) + (mean.recordings > 1 ? " +- " + Rounded(error, 2) : "");
 }
 
-std::vector<std::string> MeanCells(const MeanScore& mean, const MetricList& shown) {
-  std::vector<std::string> cells;
-  for (MetricId m : shown) cells.push_back(ScoreText(mean.value[m], mean.error[m], mean));
-  return cells;
+std::string MeanText(const MeanScore& mean, const MetricList& shown) {
+  std::vector<std::string> texts;
+  for (MetricId m : shown) texts.push_back(ScoreText(mean.value[m], mean.error[m], mean));
+  return Joined(texts, " / ");
 }
 
 // Cells without errors; "-" where there is no score.
@@ -136,10 +135,6 @@ std::string NamesText(const MetricList& shown) {
   std::vector<std::string> names;
   for (MetricId m : shown) names.push_back(kMetrics[m].name);
   return Joined(names, " / ") + " in " + kMetrics[shown.front()].unit;
-}
-
-std::string MeanText(const MeanScore& mean, const MetricList& shown) {
-  return Joined(MeanCells(mean, shown), " / ");
 }
 
 // A row of a table out of its parts.
@@ -300,8 +295,8 @@ double HalfInterval95(const PairedDifference& d) {
   return StudentQuantile95(d.clusters - 1.0) * d.error[kHipAde];
 }
 
-// One honest sentence on two configurations: they differ where the 95 % interval of the difference
-// excludes zero.
+// A sentence that compares two configurations: they differ if the 95 % interval of their
+// difference excludes zero.
 std::string ConclusionText(const PairedDifference& d) {
   if (d.clusters < 2) return d.b + " cannot be compared with " + d.a + ".";
   const Metric& metric = kMetrics[kHipAde];
@@ -418,13 +413,8 @@ Json ToJson(const CrossValidation& v) {
 }
 
 Json ToJson(const PairedDifference& d) {
-  Json json = {{"from", d.a}, {"to", d.b}, {"recordings", d.recordings}};
-  for (MetricId m : MetricsOf(d.observed, false)) {
-    json[kMetrics[m].Key()] = NumberJson(d.value[m]);
-    json[kMetrics[m].ErrorKey()] = NumberJson(d.error[m]);
-  }
-  json["clustered_by"] = NameOf(d.clustered_by);
-  json["clusters"] = d.clusters;
+  Json json = {{"from", d.a}, {"to", d.b}};
+  json.update(MeanJson(d, MetricsOf(d.observed, false), true));
   return json;
 }
 
@@ -509,40 +499,28 @@ std::string TravelText(const PropagationSummary& p) {
          Rounded(p.movers, 4) + " people who moved.";
 }
 
-TextTable PropagationTable(const std::vector<PropagationColumn>& columns) {
-  std::vector<std::string> header = {"propagation"};
-  for (const PropagationColumn& column : columns) header.push_back(column.name);
-  TextTable table(header);
-  auto row = [&](const std::string& title, auto&& cell) {
-    std::vector<std::string> cells = {title};
-    for (const PropagationColumn& column : columns) cells.push_back(cell(*column.summary));
-    table.Add(cells);
-  };
+std::string PropagationText(const NamedValues<PropagationSummary>& summaries) {
   using S = PropagationSummary;
-  row("recordings", [](const S& s) { return std::to_string(s.recordings); });
-  row("missed movers", [](const S& s) { return CountsText(s.missed_movers, s.movers); });
-  row("false movers", [](const S& s) { return CountsText(s.false_movers, s.bystanders); });
+  const auto any = [&summaries](const auto& holds) {
+    return std::any_of(summaries.begin(), summaries.end(),
+                       [&holds](const auto& one) { return holds(*one.second); });
+  };
+  ColumnTable<S> table("propagation", summaries);
+  table.Add("recordings", [](const S& s) { return std::to_string(s.recordings); });
+  table.Add("missed movers", [](const S& s) { return CountsText(s.missed_movers, s.movers); });
+  table.Add("false movers", [](const S& s) { return CountsText(s.false_movers, s.bystanders); });
   for (int i = 0; i < kNumPropagationFigures; ++i) {
-    bool any = false;
-    for (const PropagationColumn& column : columns) any |= column.summary->figures[i].known();
-    if (!any) continue;
-    row(Info(static_cast<PropagationFigure>(i)).title, [i](const S& s) {
+    if (!any([i](const S& s) { return s.figures[i].known(); })) continue;
+    table.Add(kPropagationFigures[i].title, [i](const S& s) {
       return OfThoseWhoMoveInBoth(i) && MostMissed(s) ? "-" : FigureText(s.figures[i]);
     });
     if (i == kSlownessMeasured || i == kSlownessPredicted) {
-      row("  speed, m/s", [i](const S& s) { return SpeedText(s.figures[i]); });
+      table.Add("  speed, m/s", [i](const S& s) { return SpeedText(s.figures[i]); });
     }
   }
-  return table;
-}
-
-std::string PropagationText(const std::vector<PropagationColumn>& columns) {
-  const std::string text = PropagationTable(columns).ToString();
-  for (const PropagationColumn& column : columns) {
-    if (!MostMissed(*column.summary)) continue;
-    return text + "onset error -: most movers are missed; see the row that counts them\n";
-  }
-  return text;
+  return table.ToString() +
+         (any(MostMissed) ? "onset error -: most movers are missed; see the row that counts them\n"
+                          : "");
 }
 
 std::string CrossValidationText(const std::vector<CrossValidation>& candidates) {
@@ -570,13 +548,13 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   }
   Cells header = {NamesText(shown) + ", held out"};
   std::vector<const ScoreSummary*> summaries;
-  NamedStepScores steps;
-  std::vector<PropagationColumn> columns;
+  NamedValues<StepScore> steps;
+  NamedValues<PropagationSummary> travels;
   for (const CrossValidation& candidate : candidates) {
     header.push_back(candidate.predictor);
     summaries.push_back(&candidate.summary);
     steps.emplace_back(candidate.predictor, &candidate.summary.steps);
-    columns.push_back({candidate.predictor, &candidate.summary.propagation});
+    travels.emplace_back(candidate.predictor, &candidate.summary.propagation);
   }
   TextTable by_group(header);  // empty where no label of --group_by tells recordings apart
   AddGroups(summaries, shown, true, "", &by_group);
@@ -584,7 +562,7 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   text += CandidatesTable(candidates, true).ToString() + TextLines(said) +
           (by_group.empty() ? "" : "\n" + by_group.ToString()) +
           (who_steps.empty() ? "" : "\n" + who_steps);
-  return groups ? text + "\n" + PropagationText(columns) : text;
+  return groups ? text + "\n" + PropagationText(travels) : text;
 }
 
 Screen CrossValidationScreen(const std::vector<CrossValidation>& candidates) {

@@ -14,13 +14,7 @@ namespace pushid {
 // The means beside the baselines', by strength or, without any, by the first label.
 Screen EvaluationScreen(const Evaluation& evaluation);
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording);
-// One column per summary: all recordings, one setting, one candidate.
-struct PropagationColumn {
-  std::string name;
-  const PropagationSummary* summary;
-};
-TextTable PropagationTable(const std::vector<PropagationColumn>& columns);
-std::string PropagationText(const std::vector<PropagationColumn>& columns);
+std::string PropagationText(const NamedValues<PropagationSummary>& summaries);
 // A sentence about how pushes travel through groups, measured and predicted; empty without any.
 std::string TravelText(const PropagationSummary& propagation);
 

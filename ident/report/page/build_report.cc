@@ -9,9 +9,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/bodies/animation.h"
 #include "ident/figures/svg.h"
-#include "ident/prediction/evaluation.h"
 #include "ident/prediction/prediction.h"
-#include "ident/prediction/propagation.h"
 #include "ident/report/fit_sections.h"
 #include "ident/report/parameter_sections.h"
 #include "ident/report/report_text.h"
@@ -44,9 +42,7 @@ std::vector<RecordingView> ViewRecordings(const FitResult& result,
     }
     const RolloutStatus& status = view.run.prediction.status;
     if (!status.ok) {
-      view.note += (view.note.empty() ? "" : "; ") + std::string(status.quantity) + " of person " +
-                   std::to_string(status.person) + " leaves the model's domain at frame " +
-                   std::to_string(status.frame);
+      view.note += (view.note.empty() ? "" : "; ") + OutsideText(status);
     }
     if (view.note.empty()) fitted.push_back(view.run.recording);
   }
@@ -66,6 +62,9 @@ std::vector<RecordingView> ViewRecordings(const FitResult& result,
     ToLaboratory(view.run.recording.scene, &view.bands);
     view.run.prediction = InLaboratory(view.run.recording, std::move(view.run.prediction));
     view.run.recording = InLaboratory(std::move(view.run.recording));
+    if (!view.run.prediction.status.ok) continue;
+    view.score = ScoreHip(view.run.recording, view.run.prediction.hip);
+    AddContactFigures(model, view.run.prediction, &view.score.propagation);
   }
   return views;
 }
@@ -311,8 +310,7 @@ std::optional<ReportFigure> TypicalFigure(const ReportSource& source) {
   std::vector<std::pair<double, const RecordingView*>> ranked;
   for (const RecordingView& view : source.views) {
     if (!view.run.prediction.status.ok) continue;
-    ranked.emplace_back(ScoreHip(view.run.recording, view.run.prediction.hip).value[kHipAde],
-                        &view);
+    ranked.emplace_back(view.score.value[kHipAde], &view);
   }
   if (ranked.empty()) return std::nullopt;
   std::stable_sort(ranked.begin(), ranked.end(),
@@ -392,8 +390,7 @@ ReportSection MotionSection(const ReportSource& source) {
     const std::string& id = recording.id;
     ReportFold fold{id, {}};
     if (prediction.status.ok) {
-      const Metrics errors = ScoreHip(recording, prediction.hip).value;
-      fold.title += ": predicted " + MetricsText(TableMetrics(0), errors, 2);
+      fold.title += ": predicted " + MetricsText(TableMetrics(0), view.score.value, 2);
     }
     if (!view.note.empty()) fold.title += " (" + view.note + ")";
     fold.figures.push_back({"motion_" + id, "Measured and predicted motion of " + id + ".",
@@ -502,18 +499,10 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
       "parameters, their uncertainty and their predictions; pushid " + model.provenance.version;
   ReportSource source{model};
   source.views = ViewRecordings(result, recordings, num_threads, progress);
-  const IdentifiedModel identified = ModelOf(result);
-  source.frequency = FrequencyResponses(identified, MakePendulumRecordings(recordings));
-  std::vector<PropagationScore> scores;
-  for (const RecordingView& view : source.views) {
-    const FormationRun& run = view.run;
-    if (run.recording.num_people() < 2 || !run.prediction.status.ok) continue;
-    scores.push_back(ScorePropagation(run.recording, run.prediction.hip));
-    AddContactFigures(identified, run.prediction, &scores.back());
-  }
-  std::vector<const PropagationScore*> all;
-  for (const PropagationScore& score : scores) all.push_back(&score);
-  source.propagation = SummarizePropagation(all);
+  source.frequency = FrequencyResponses(ModelOf(result), MakePendulumRecordings(recordings));
+  std::vector<const PropagationScore*> scores;
+  for (const RecordingView& view : source.views) scores.push_back(&view.score.propagation);
+  source.propagation = SummarizePropagation(scores);
   for (RenderSection* const render : kSections) report.sections.push_back(render(source));
   return report;
 }
@@ -521,23 +510,29 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
 std::string DetailsText(const FittedModel& model) { return ToText(BuildReport(model, {})); }
 
 ReportSection LeadSection(const ReportSource& source) {
+  ReportSection section{"short", "In short"};
+  const std::string verdict = FirstSentences(source.fit, !source.fit.verdict.fails());
+  section.verdict_first = !source.fit.verdict.fails() && source.fit.verdict.none_identified.empty();
+  (section.verdict_first ? section.paragraphs.emplace_back() : section.alarm) = verdict;
+  const std::vector<Advice>& advice = source.model.advice;
+  section.Say("What to do next: " +
+              (advice.empty() ? "predict a push that was not fitted." : advice.front().sentence));
+  section.Say(GainsText(source.fit));
+  section.Say(BalanceText(source.fit));
   const std::string travels = TravelText(source.propagation);
-  ReportSection section = ShortSection(
-      source.model,
-      travels.empty() ? "" : "How the push travels in the fitted recordings: " + travels);
+  section.Say(travels.empty() ? "" : "How the push travels in the fitted recordings: " + travels);
   if (const std::optional<ReportFigure> typical = TypicalFigure(source))
     section.figures.push_back(*typical);
   const ReportFigure known = IntervalFigure(source.model, true);
   if (!known.numbers.empty()) section.figures.push_back(known);
-  // The next step stands below the figures, and the rest of what is known below that.
-  std::rotate(section.paragraphs.begin(), section.paragraphs.end() - 1, section.paragraphs.end());
-  const std::string verdict = FirstSentences(source.fit, !source.fit.verdict.fails());
-  section.verdict_first = !source.fit.verdict.fails() && source.fit.verdict.none_identified.empty();
-  if (section.verdict_first) {
-    section.paragraphs.insert(section.paragraphs.begin(), verdict);
-  } else {
-    section.alarm = verdict;
+  section.Show("", ShortTable(source.fit));
+  TextTable legend({"name", "unit", "meaning"});
+  for (const Estimate& e : source.fit.estimates) {
+    const ParameterSpec* spec = source.fit.options.table.Find(e.name);
+    if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
+    legend.Add({e.name, e.unit == "1" ? "-" : e.unit, spec->meaning});
   }
+  section.Show("what the names mean", legend);
   return section;
 }
 
@@ -545,11 +540,11 @@ ReportSection FrequencySection(const ReportSource& source) {
   ReportSection section{"frequency", "Frequency response"};
   if (source.frequency.empty()) return section;
   section.Say(
-      "How people answer what disturbs them on and on, frequency by frequency: the cross spectrum "
-      "of the answer and the disturbance over the spectrum of the disturbance, of each person "
-      "first, then the mean of log gain and phase over people. Frequencies whose coherence could "
-      "be chance are left out. The model's curve is the closed form of its linearized loop, with "
-      "the same people's parameters.");
+      "The response of people to a continuous disturbance, by frequency: the cross spectrum of "
+      "response and disturbance over the spectrum of the disturbance, computed for each person, "
+      "then the mean of log gain and phase over people. Frequencies whose coherence could be "
+      "chance are left out. The model's curve is the closed form of its linearized loop, with the "
+      "same people's parameters.");
   const std::string without = WithoutLinearLoop(source.fit.options.model);
   section.Say(without.empty() ? "" : "There is no curve: " + without + ".");
   for (const FrequencyResponse& response : source.frequency) {

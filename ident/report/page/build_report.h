@@ -13,6 +13,7 @@
 #include "datasets/manifest/recording.h"
 #include "ident/formations/formation_run.h"
 #include "ident/model/fitted_model.h"
+#include "ident/prediction/evaluation.h"
 #include "ident/prediction/frequency_response.h"
 #include "ident/prediction/futures.h"
 #include "ident/prediction/propagation.h"
@@ -34,6 +35,7 @@ struct RecordingView {
   const Recording* recording = nullptr;  // with all joints where they were read
   FormationRun run;                      // pendulums and prediction
   PredictiveBands bands;                 // empty when the rollouts failed
+  RecordingScore score;                  // empty after a failure
   std::string note;  // "not among those fitted", "its files have changed since", or a failure
 };
 

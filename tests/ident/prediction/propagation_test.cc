@@ -94,7 +94,7 @@ TEST(Propagation, NobodyMoves) {
   EXPECT_EQ(summary.bystanders, 3.0);
   for (PropagationFigure figure :
        {kOnsetError, kMissedMovers, kSlownessMeasured, kMomentumMeasured, kContactWork}) {
-    EXPECT_FALSE(summary.figures[figure].known()) << Info(figure).key;
+    EXPECT_FALSE(summary.figures[figure].known()) << kPropagationFigures[figure].key;
   }
   EXPECT_EQ(summary.figures[kFalseMovers].value, 0.0);
   EXPECT_FALSE(Speed(summary.figures[kSlownessMeasured]));
@@ -198,7 +198,7 @@ TEST(Propagation, CrossValidationAveragesOverRepeats) {
   }
   const auto folds = Unwrapped(MakeFolds(recordings, FoldScheme::kStratified, 2, 3, 1));
   const CrossValidation still =
-      CrossValidate(recordings, folds, BaselinePredictor(kBaselines[0]), 1);
+      CrossValidate(recordings, folds, BaselinePredictor(Baselines(0)[0]), 1);
   EXPECT_DOUBLE_EQ(still.summary.propagation.movers, 8.0);  // not times three
   EXPECT_DOUBLE_EQ(still.summary.propagation.missed_movers, 8.0);
   EXPECT_DOUBLE_EQ(still.summary.propagation.bystanders, 4.0);

@@ -163,7 +163,7 @@ TEST(CrossValidation, HeldOutPredictionsOfTheRightModelAreGood) {
   EXPECT_EQ(model.failures, 0);
   EXPECT_EQ(model.falls, 0);
   const CrossValidation still =
-      CrossValidate(recordings, folds, BaselinePredictor(kBaselines[0]), 1);
+      CrossValidate(recordings, folds, BaselinePredictor(Baselines(0)[0]), 1);
   EXPECT_GT(still.summary.mean.value[kHipAde], 0.05);
   const CrossValidation ridge = CrossValidate(recordings, folds, RidgePredictor(), 1);
   EXPECT_LT(ridge.summary.mean.value[kHipAde], still.summary.mean.value[kHipAde]);
