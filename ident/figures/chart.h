@@ -13,8 +13,8 @@ namespace pushid {
 
 using ChartPoints = std::vector<std::pair<double, double>>;
 
-// Looks that differ on light and on dark paper, for the colour-blind and in grey. Those of many
-// panels are classes of SvgStyle.
+// Looks of lines and areas that stay distinct on light and dark paper, for the colour-blind and in
+// grey. Looks that many panels use are classes of SvgStyle.
 inline constexpr char kMeasuredLook[] = "ink";
 inline constexpr char kPredictedLook[] = "predicted";
 inline constexpr char kWideBandLook[] = "band wide";
@@ -76,12 +76,12 @@ struct Chart {
   double full_cell = 1.0;
   // Wanted height; rows of categories have their own.
   double width = kPanelWidth, height = kPanelHeight;
-  double row = 16, bar = 0.72;  // height of a row, and what of it a bar fills
+  double row = 16, bar = 0.72;  // height of a row, and the share of it that a bar fills
 
   void Shrink() { width = kSmallWidth, height = kSmallHeight; }
 };
 
-// The meaning of the lines of a picture.
+// A look and its meaning.
 struct LegendEntry {
   std::string name, look;
 };

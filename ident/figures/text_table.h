@@ -103,7 +103,7 @@ std::string WithError(double value, double error);
 // The head of a column: "mu, N s/m", and the name alone where the unit is "1".
 std::string WithUnit(const std::string& name, const std::string& unit);
 
-// The rest is printed by --details, or where `rest` says.
+// The output of a program without --details; `rest` says how to see the rest.
 struct Screen {
   std::string title, verdict = {};
   std::vector<TextTable> tables = {};

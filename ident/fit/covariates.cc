@@ -143,12 +143,11 @@ class SlopeRows {
     }
     std::vector<double> means;
     for (const auto& [person, values] : of_people) means.push_back(MeanOf(values).mean);
+    const MeanAndError people = MeanOf(means);
     Covariate covariate;
     covariate.key = key;
-    covariate.centre = MeanOf(means).mean;
-    double squares = 0.0;
-    for (double mean : means) squares += (mean - covariate.centre) * (mean - covariate.centre);
-    const double spread = std::sqrt(squares / static_cast<double>(means.size() - 1));
+    covariate.centre = people.mean;
+    const double spread = people.error * std::sqrt(static_cast<double>(means.size()));
     if (!(spread > 0.0)) {
       return Error{"--covariate names " + key + ", which differs within people, not between them"};
     }
@@ -206,7 +205,7 @@ class SlopeRows {
 };
 
 // A label that is compared is not pooled by as well: deviations would take part of the difference.
-void UnpoolLabel(FitOptions* options, Warnings* told) {
+void UnpoolLabel(FitOptions* options, Warnings* warnings) {
   if (options->contrast.empty() || options->pool_by != options->contrast) return;
   std::vector<std::string> names;
   for (ParameterSpec& spec : options->table.specs) {
@@ -214,14 +213,14 @@ void UnpoolLabel(FitOptions* options, Warnings* told) {
     spec.pooled = false;
   }
   if (names.empty()) return;
-  told->push_back("--contrast=" + options->contrast + " compares " + Joined(names) +
-                  ", which would be pooled by the same label: not pooled");
+  warnings->push_back("--contrast=" + options->contrast + " compares " + Joined(names) +
+                      ", which would be pooled by the same label: not pooled");
 }
 
 }  // namespace
 
 MaybeError AddCovariates(const std::vector<PendulumRecording>& recordings, FitOptions* options,
-                         Warnings* told) {
+                         Warnings* warnings) {
   if (options->contrast.empty() && options->covariates.empty()) return std::nullopt;
   for (const ParameterSpec& spec : options->table.specs) {
     if (spec.slope_of) return std::nullopt;
@@ -232,7 +231,7 @@ MaybeError AddCovariates(const std::vector<PendulumRecording>& recordings, FitOp
   }
   const Result<std::vector<CovariatesOfParameter>> chosen = ParseCovariates(options->covariates);
   if (!chosen.ok()) return chosen.error();
-  UnpoolLabel(options, told);
+  UnpoolLabel(options, warnings);
   SlopeRows rows(recordings, &options->table, options->preset_priors);
   // Contrasts first: numbers are no targets of theirs.
   if (!options->contrast.empty()) {

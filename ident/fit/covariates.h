@@ -19,7 +19,8 @@ namespace pushid {
 inline constexpr int kLeastDistinctValues = 3;
 
 // Adds the slopes of options->contrast and options->covariates to the table. Where it has slopes
-// already (a fold of a prepared fit), they stay as they are. `told` (not null): what was done.
+// already (a fold of a prepared fit), they stay as they are. warnings (not null) say what
+// was done.
 //
 // A contrast is of every free parameter, noise excepted, and of those that two people share only
 // where a recording's people all have the same value of the label. A parameter that differs by
@@ -28,7 +29,7 @@ inline constexpr int kLeastDistinctValues = 3;
 // there are) or somebody lacks; fewer than three distinct numbers; other than two values of the
 // label; more slopes than there is room for; a network that is trained by its gradient.
 MaybeError AddCovariates(const std::vector<PendulumRecording>& recordings, FitOptions* options,
-                         Warnings* told);
+                         Warnings* warnings);
 
 // Differences judged by people's own fits (uncertainty/contrast.h): everybody who was recorded
 // alone is fitted alone where each value holds, which costs about as much as the joint fit. Where

@@ -20,9 +20,9 @@ struct Motion {
 constexpr int kLeastPredicted = 10;                                   // frames
 constexpr double kWindow = 14.0 / 60.0, kFading = 0.25, kDrag = 1.0;  // s, s and 1/s
 
-// Hips as recorded until the last frame that is known, then by steps of a motion from the last one
-// that was seen. motion_at(hip, seen, frame): that of a person whose hip was seen in the
-// frames of which seen(t) holds; frame 0 always was.
+// Hips as recorded until the last known frame, then extrapolated from the last frame in which the
+// person was seen. motion_at(hip, seen, frame) is the motion at that frame, seen(t) whether the hip
+// was seen at frame t (frame 0 always was); step advances the motion by one frame.
 template <typename MotionAt, typename Step>
 HipPaths GoneOn(const PendulumRecording& recording, int observed, const MotionAt& motion_at,
                 const Step& step) {
@@ -77,7 +77,7 @@ RecordingScore FailedScore(const PendulumRecording& recording, const std::string
   score.fell = true;
   score.failure = failure;
   score.value =
-      ScoreHip(recording, StaticBaseline(recording), observed).value;  // of the second mean
+      ScoreHip(recording, StaticBaseline(recording), observed).value;  // for MeanWithStatic
   return score;
 }
 

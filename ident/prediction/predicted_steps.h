@@ -30,8 +30,8 @@ struct Footprint {
 // Footprints by landing. start: the state at frame 0; steps: by lift-off.
 std::vector<Footprint> Footprints(const PendulumState<double>& start,
                                   const std::vector<FootStep>& steps, int num_frames);
-// Footprints of all people, recorded and predicted; none on ground that moves, and no predicted
-// ones where the model's feet do not step, or where later frames than the first were seen.
+// Footprints of all people, recorded and predicted; none on ground that moves. There are no
+// predicted ones if the model's feet do not step, or frames after the first were observed.
 using FootprintsOfPeople = std::vector<std::vector<Footprint>>;
 FootprintsOfPeople RecordedFootprints(const PendulumRecording& recording);
 FootprintsOfPeople PredictedFootprints(const PendulumRecording& recording,
@@ -51,8 +51,8 @@ std::string PredictedStepsText(const PendulumRecording& recording, const Predict
 // Standard errors by leaving out one person after the other (jackknife): one body and one habit
 // make all of a person's tracks.
 
-// When somebody steps, and how far, s from frame 0: the first step that a model whose feet step
-// predicts, and the first that was recorded.
+// The times (s from frame 0) and travels of a person's first predicted step, in a model whose feet
+// step, and of the first recorded one.
 struct StepTiming {
   std::optional<double> lift_off, landing;           // no landing: in the air in the last frame
   Eigen::Vector2d travel = Eigen::Vector2d::Zero();  // of the foot, m

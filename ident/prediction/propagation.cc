@@ -115,7 +115,7 @@ using Vector2d = Eigen::Vector2d;
 constexpr int kMinMovers = 3;     // for a speed
 constexpr int kHalfVelocity = 3;  // frames on either side of a velocity: 2 mm of noise are 0.03 m/s
 
-// People without onsets and momenta: rank and distance.
+// People with their ranks and distances, still without onsets and momenta.
 std::vector<PersonPropagation> RankedPeople(const PendulumRecording& recording) {
   const int people = recording.num_people();
   const Vector2d from = recording.scene.people[recording.pushed_person].start.q.head<2>();

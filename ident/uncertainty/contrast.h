@@ -57,11 +57,11 @@ struct OwnEstimate {
   double fitted = 0.0;  // on the fitted scale
 };
 
-// Student's test of people's own estimates, each person once a value: Welch's where nobody has both
-// values, paired by person where all have; where some have, by the covariance of these, with one
-// degree of freedom less than the smaller group has people. Sets values (means on the fitted
-// scale), difference, interval, p and effect. false, and nothing set: fewer than two people with a
-// value, or no scatter.
+// Student's test of people's own estimates, one for each person and value: Welch's test if nobody
+// has both values, a paired test if all people have both. If some have both, the test uses their
+// covariance, with one degree of freedom less than the smaller group has people. Sets values (means
+// on the fitted scale), difference, interval, p and effect. Returns false and sets nothing if a
+// value has fewer than two people, or there is no scatter.
 bool JudgeByPeople(Transform transform, const std::vector<OwnEstimate>& people, ContrastRow* row);
 
 // Holm's p of all rows: with the m p values in ascending order, the largest of (m - k + 1) p_k up

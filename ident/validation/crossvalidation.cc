@@ -13,7 +13,7 @@
 namespace pushid {
 namespace {
 
-// The prediction of recordings without a fit.
+// Failures of all test recordings of a fold whose fit failed.
 FoldPrediction WithoutFit(const std::vector<PendulumRecording>& recordings,
                           const std::vector<int>& test, const std::string& why) {
   FoldPrediction prediction;
@@ -30,8 +30,8 @@ constexpr double kRidgeStrength = 1.0;  // on standardized features
 
 FoldPrediction ScoreTemplate(const std::vector<PendulumRecording>& recordings,
                              const std::vector<int>& train, const std::vector<int>& test) {
-  // The mean over training recordings that last so long, of one condition or of all; whether any
-  // do.
+  // Computes the mean over the training recordings that have frame t, of one condition or (null) of
+  // all; false if there are none.
   const auto displacement = [&](const std::string* condition, int t, Eigen::Vector3d* mean) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     int count = 0;
@@ -115,8 +115,8 @@ struct Sums {
   std::vector<int> counts;
 };
 
-// Each person's probabilities follow from the held-out margins of everybody else: margins of
-// recordings that were fitted err less, and a person's own steps are what is to be predicted.
+// Sets each person's step probabilities from the held-out margins of all other people: margins of
+// fitted recordings have smaller errors, and the person's own steps are to be predicted.
 void PredictStepsWithoutThePerson(std::vector<RecordingScore>* scores) {
   std::vector<StepOutcome> all;
   std::set<std::string> people;

@@ -1,5 +1,5 @@
-// ident: how well the motion of groups is predicted beyond the distance of joints: whether people
-// do what people do, and whether a push goes through the group as it did.
+// ident: metrics of predicted groups beyond the distance of joints: whether people move like
+// people, and whether a push travels through the group as recorded.
 //
 //   sscp           Jensen and Shannon's distance of the transitions between social states
 //   sscp_changes   the same of changes of state alone; no value where nothing ever changes

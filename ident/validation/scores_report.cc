@@ -79,7 +79,7 @@ std::vector<std::string> FailedRecordings(const ScoreSummary& summary) {
   return failed;
 }
 
-// The mean over all recordings, with the error of standing still where there is no prediction.
+// The mean over all recordings; one without a prediction has the error of the static baseline.
 Metrics MeanWithStatic(const ScoreSummary& summary) {
   Metrics sum = Metrics::Zero();
   for (const RecordingScore& r : summary.recordings) sum += r.value;
@@ -169,7 +169,8 @@ std::string BandsText(const std::string& name, const ScoreSummary& summary) {
          text(kInside50 + 1) + "; CRPS " + text(kCrps) + " m\n";
 }
 
-// A row of means of predictors; errors: of all, not of the first alone.
+// A row with the mean of each predictor. errors: with standard errors of all of them, otherwise of
+// the first alone.
 std::vector<std::string> MeansRow(const std::string& name, const std::vector<MeanScore>& means,
                                   const MetricList& shown, bool errors) {
   std::vector<std::string> row = {name};
@@ -181,7 +182,7 @@ std::vector<std::string> MeansRow(const std::string& name, const std::vector<Mea
   return row;
 }
 
-// only: by this label alone; empty: by all.
+// Adds a row for each group. only: groups by this label; empty: by all labels.
 void AddGroups(const std::vector<const ScoreSummary*>& summaries, const MetricList& shown,
                bool errors, const std::string& only, TextTable* table) {
   for (const auto& [key, groups] : summaries[0]->by) {
@@ -224,7 +225,7 @@ std::string FailuresText(const std::string& name, const ScoreSummary& summary,
          Joined(PlainCells(MeanWithStatic(summary), shown), " / ") + "\n";
 }
 
-// The onset errors of those who move in both say little where most movers are missed: a model that
+// Onset errors of the people who move in both say little if most movers are missed: a model that
 // moves only the pushed person would look best.
 bool MostMissed(const PropagationSummary& s) { return s.missed_movers > 0.5 * s.movers; }
 

@@ -11,7 +11,8 @@
 
 namespace pushid {
 
-// The means beside the baselines', by strength or, without any, by the first label.
+// The means of the model and the baselines, by strength, or by the first label if there is no
+// strength.
 Screen EvaluationScreen(const Evaluation& evaluation);
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording);
 std::string PropagationText(const NamedValues<PropagationSummary>& summaries);
@@ -41,8 +42,9 @@ void AddMeans(const ScoreMeans& means, const MetricList& metrics, bool with_clus
 Result<Metrics> MeanMetrics(const nlohmann::ordered_json& json, const MetricList& metrics,
                             const std::string& file);
 
-// Several samples of one forecast, each scored by itself, as SDM has it: the means of all numbers.
-// Whatever has no value in one of them has none; what is no number is the first's.
+// The mean of the scores of several samples of one forecast, each scored by itself, as SDM does.
+// An entry that is null in one sample is null; an entry that is no number is that of the first
+// sample.
 nlohmann::ordered_json MeanOfSamples(const std::vector<nlohmann::ordered_json>& samples);
 
 }  // namespace pushid
