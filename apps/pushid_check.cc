@@ -103,7 +103,7 @@ int Run() {
   const Screen found = OrFail(CheckScreen(recordings, checks, model));
   if (FLAGS_details) std::printf("%s", DetailsText(model).c_str());
   std::printf("%s", found.ToString().c_str());
-  if (writes) OrFail(WriteModelFile(out, model, FLAGS_num_threads, begin));
+  if (writes) OrFail(WriteFittedModel(out, model, FLAGS_num_threads, Now() - begin));
   return kDone;
 }
 

@@ -3,6 +3,7 @@
 #include "apps/flags/fit_option_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "ident/fit/fit.h"
+#include "ident/model/model_json.h"
 #include "ident/parameters/parameter_table.h"
 #include "ident/parameters/presets.h"
 #include "ident/report/advice.h"
@@ -67,7 +68,7 @@ int Run() {
 
   std::printf("%s", (FLAGS_details ? DetailsText(model) : ScreenOf(model).ToString()).c_str());
   if (!FLAGS_model_out.empty()) {
-    OrFail(WriteModelFile(FLAGS_model_out, model, NumThreads(), begin));
+    OrFail(WriteFittedModel(FLAGS_model_out, model, NumThreads(), Now() - begin));
   }
   if (result.converged) return kDone;
   return Fail("the fit did not converge: " + result.message, kFitFailed);

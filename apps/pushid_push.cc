@@ -266,11 +266,12 @@ int Run() {
     Recording pushed = recorded;
     pushed.pushes = {made.push};
     pushed.push_kind = made.kind;
-    for (Finding& finding : FindingsOf(pushed)) findings.push_back(std::move(finding));
+    for (Finding& finding : FindingsOf(MakePendulumRecording(pushed))) {
+      findings.push_back(std::move(finding));
+    }
     pushes.push_back(made);
   }
-  for (const std::string& warning : FindingTexts(FitFindings(std::move(findings))))
-    LOG(WARNING) << warning;
+  for (const std::string& warning : FindingTexts(findings)) LOG(WARNING) << warning;
   // Everything is checked before the first file is written.
   Manifest manifest = OrFail(FlaggedManifest());
   for (ManifestRecording& entry : manifest.recordings) {

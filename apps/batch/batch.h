@@ -33,7 +33,6 @@ struct BatchPlan {
   int folds = 0, bootstrap = 0;
   uint64_t seed = 1;
   double time_limit_s = 0.0;
-  int memory_limit_mb = 0;
   std::vector<BatchVariant> variants;
   std::string dir;
   std::map<std::string, int> lines;  // of the keys of its tables

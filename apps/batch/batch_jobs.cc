@@ -315,19 +315,6 @@ std::string LastLine(const std::string& path) {
   return last.size() <= kMost ? last : last.substr(0, kMost) + "...";
 }
 
-// Whether a program ended because it got no more memory under its limit: with a message of its own,
-// with one of the loader, or with none.
-bool LooksOutOfMemory(const ChildEnd& end, const std::string& last) {
-  for (int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGKILL}) {
-    if (end.signal == signal) return true;
-  }
-  for (const char* words :
-       {"out of memory", "bad_alloc", "annot allocate memory", "failed to map segment"}) {
-    if (last.find(words) != std::string::npos) return true;
-  }
-  return false;
-}
-
 struct Running {
   const BatchJob* job = nullptr;
   std::string folder;
@@ -404,7 +391,7 @@ class Pool {
   // Starts the job's next command.
   MaybeError Start(Running* running) {
     const ChildSpec spec{running->commands[running->step], running->folder + "/stdout.txt",
-                         running->folder + "/stderr.txt", plan_.memory_limit_mb};
+                         running->folder + "/stderr.txt"};
     const Result<pid_t> child = StartChild(spec);
     if (!child.ok()) return child.error();
     running->pid = child.value();
@@ -441,10 +428,6 @@ class Pool {
       return "timed out after " + DoubleText(plan_.time_limit_s) + " s";
     }
     const std::string last = LastLine(running.folder + "/stderr.txt");
-    if (plan_.memory_limit_mb > 0 && LooksOutOfMemory(end, last)) {
-      return "out of memory (limit " + std::to_string(plan_.memory_limit_mb) + " MB" +
-             (end.signal != 0 ? std::string("; ") + strsignal(end.signal) : "") + ")";
-    }
     if (end.signal != 0) {
       return std::string("killed by signal ") + strsignal(end.signal) +
              (last.empty() ? "" : "; last message: " + last);

@@ -141,14 +141,12 @@ class PlanReader {
 
   void Jobs() {
     const toml::table* jobs =
-        Table("jobs", {"group_by", "folds", "bootstrap", "seed", "time_limit_s", "memory_limit_mb"},
-              false);
+        Table("jobs", {"group_by", "folds", "bootstrap", "seed", "time_limit_s"}, false);
     if (jobs == nullptr) return;
     Get(*jobs, "group_by", "a string", &plan_.group_by);
     GetCount(*jobs, "folds", 1000, &plan_.folds);
     if (plan_.folds == 1) Fail(*jobs->get("folds"), "folds is 1; it must be 0 or at least 2");
     GetCount(*jobs, "bootstrap", 1000000, &plan_.bootstrap);
-    GetCount(*jobs, "memory_limit_mb", 1 << 24, &plan_.memory_limit_mb);
     int64_t seed = 1;
     Get(*jobs, "seed", "a whole number", &seed);
     if (seed < 0) Fail(*jobs->get("seed"), "seed must not be negative");

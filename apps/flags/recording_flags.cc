@@ -103,7 +103,8 @@ std::vector<Recording> LoadFlaggedRecordings(const std::vector<std::string>& ids
   Warnings found;
   Result<std::vector<Recording>> recordings = LoadRecordings(manifest.value(), options, &found);
   if (recordings.ok()) {
-    for (Warning& doubt : FacingWarnings(recordings.value())) found.push_back(std::move(doubt));
+    const Warnings facing = FindingWarnings(FacingFindings(recordings.value()));
+    found.insert(found.end(), facing.begin(), facing.end());
   }
   WarnGrouped(found);
   if (warnings != nullptr) *warnings = found;

@@ -1,7 +1,6 @@
 // apps: fits in Python: options named as the flags, results, checks by refits, and the report's
 // figures as data for matplotlib.
 #include <algorithm>
-#include <ctime>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -130,15 +129,9 @@ std::shared_ptr<Model> WithoutData(Result<FittedModel> read) {
 }
 
 void Save(const Model& model, const std::string& path) {
-  char date[32];
-  const std::time_t now = std::time(nullptr);
-  std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
-  RunInfo run;
-  run.date = date;
-  run.model_path = path;
-  run.num_threads = model.fitted->fit.options.num_threads;
-  run.total_seconds = model.fitted->fit.solve_seconds;
-  Check(WriteJson(path, ToJson(*model.fitted, run)), Fault::kData);
+  const FitResult& fit = model.fitted->fit;
+  Check(WriteFittedModel(path, *model.fitted, fit.options.num_threads, fit.solve_seconds),
+        Fault::kData);
 }
 
 // A report, with figures of the model's recordings if it has them. Releases the GIL.

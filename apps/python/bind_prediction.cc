@@ -68,36 +68,19 @@ void WarnOfInputs(const IdentifiedModel& model, const PendulumRecording& recordi
   for (const Warning& warning : InputWarnings(model, {recording})) Warn(warning.text);
 }
 
-// Hips of drawn futures, (samples, frames, people, 3).
-Array DrawsArray(const std::vector<HipPaths>& futures) {
-  const int samples = static_cast<int>(futures.size());
-  const int people = samples == 0 ? 0 : static_cast<int>(futures[0].size());
-  const int frames = people == 0 ? 0 : static_cast<int>(futures[0][0].size());
-  return Reshaped(TableArray(samples * frames, people, 3,
-                             [&](int i, int n) { return futures[i / frames][n][i % frames]; }),
-                  {samples, frames, people, 3});
-}
-
-std::vector<HipPaths> HipsOf(const std::vector<std::vector<std::vector<BandPoint>>>& paths) {
-  std::vector<HipPaths> hips;
-  for (const auto& draw : paths) {
-    hips.emplace_back();
-    for (const auto& person : draw) {
-      hips.back().emplace_back();
-      for (const BandPoint& point : person) hips.back().back().push_back(point.head<3>());
-    }
-  }
-  return hips;
-}
-
-// Futures with parameters drawn from their covariance and errors as those of the fitted recordings.
-std::vector<HipPaths> Drawn(const Model& model, const PendulumRecording& seen, int frames,
-                            int samples, uint64_t seed) {
-  const BandOptions options{samples, seed};
+// Hips of futures, (samples, frames, people, 3), with parameters drawn from their covariance and
+// errors as those of the fitted recordings.
+Array Drawn(const Model& model, const PendulumRecording& seen, int frames, int samples,
+            uint64_t seed) {
   const FitResult& fit = model.fitted->fit;
-  const std::vector<ParameterSet<double>> sets = SampleParameters(fit, options);
-  return HipsOf(
-      DrawPaths(fit, sets, ErrorPaths(fit, DataOf(model)->pendulums), seen, seed, frames));
+  const auto paths = DrawPaths(fit, SampleParameters(fit, BandOptions{samples, seed}),
+                               ErrorPaths(fit, DataOf(model)->pendulums), seen, seed, frames);
+  const int drawn = static_cast<int>(paths.size()), people = seen.num_people();
+  const int each = drawn == 0 ? 0 : static_cast<int>(paths[0][0].size());
+  const auto hip = [&](int i, int n) -> Eigen::Vector3d {
+    return paths[i / each][n][i % each].head<3>();
+  };
+  return Reshaped(TableArray(drawn * each, people, 3, hip), {drawn, each, people, 3});
 }
 
 PendulumRecording PushedAs(const ChangedPushes& changed, const PendulumRecording& recorded,
@@ -140,7 +123,7 @@ py::dict PredictOn(const Model& model, const SharedRecording& recording, int obs
   py::dict dict =
       DictOf(Unwrapped(PredictFrom(identified, seen, observed, frames, use), Fault::kUsage), seen);
   dict["person"] = PersonText(model.fitted->fit, identified, {seen});
-  if (samples > 0) dict["samples"] = DrawsArray(Drawn(model, seen, frames, samples, seed));
+  if (samples > 0) dict["samples"] = Drawn(model, seen, frames, samples, seed);
   return dict;
 }
 

@@ -54,19 +54,10 @@ using namespace py::literals;
 
 using Track = std::vector<Eigen::Vector3d>;
 
-// The track of a single person is a view of the recording; those of several people are copied.
 Array TrackArray(const SharedRecording& recording, Track RecordedPerson::*track) {
   const auto& people = recording->people;
-  if (people.size() != 1) {
-    return TableArray(recording->num_frames(), static_cast<int>(people.size()), 3,
-                      [&](int t, int n) { return (people[n].*track)[t]; });
-  }
-  auto* keeper = new SharedRecording(recording);
-  const py::capsule owner(keeper, [](void* p) { delete static_cast<SharedRecording*>(p); });
-  Array view({static_cast<py::ssize_t>(recording->num_frames()), py::ssize_t{1}, py::ssize_t{3}},
-             (people[0].*track)[0].data(), owner);
-  view.attr("flags").attr("writeable") = false;
-  return view;
+  return TableArray(recording->num_frames(), static_cast<int>(people.size()), 3,
+                    [&](int t, int n) { return (people[n].*track)[t]; });
 }
 
 Array StatesArray(const SharedRecording& recording) {
@@ -131,7 +122,8 @@ py::tuple Read(const std::string& manifest, const std::string& setting,
   Warnings warnings;
   auto read = WithoutGil([&] { return LoadRecordings(manifest, options, &warnings); });
   std::vector<Recording> loaded = Unwrapped(std::move(read), Fault::kData);
-  for (Warning& doubt : FacingWarnings(loaded)) warnings.push_back(std::move(doubt));
+  const Warnings facing = FindingWarnings(FacingFindings(loaded));
+  warnings.insert(warnings.end(), facing.begin(), facing.end());
   std::vector<SharedRecording> recordings;
   for (Recording& one : loaded) {
     recordings.push_back(std::make_shared<const Recording>(std::move(one)));
@@ -201,7 +193,7 @@ py::list FindingsIn(const std::vector<SharedRecording>& recordings) {
   py::list list;
   std::vector<Finding> found = FindingsOf(Pendulums(recordings));
   for (const SharedRecording& one : recordings) {
-    for (Finding& finding : FacingFindings(*one)) found.push_back(std::move(finding));
+    for (Finding& finding : FacingFindings({*one})) found.push_back(std::move(finding));
   }
   for (const Finding& finding : found) {
     const FindingRow& row = RowOf(finding.kind);
@@ -353,7 +345,7 @@ SharedRecording FromArrays(const Array& hip, const Array& left_ankle, const Arra
   // Generalized forces need the rod and the angles, which are computed from the motion.
   Warnings warnings;
   Recording recording = Unwrapped(RecordingFromTracks(tracks, {}, &warnings), Fault::kData);
-  const Warnings ankles = FacingWarnings({recording});
+  const Warnings ankles = FindingWarnings(FacingFindings({recording}));
   warnings.insert(warnings.end(), ankles.begin(), ankles.end());
   Warn(warnings);
   if (push.is_none()) return std::make_shared<const Recording>(std::move(recording));

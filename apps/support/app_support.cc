@@ -12,14 +12,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
 #include <vector>
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/manifest/manifest.h"
-#include "ident/model/model_json.h"
 
 namespace pushid {
 namespace {
@@ -148,21 +146,6 @@ void TrainingLine::Show(const std::string& step, double done) {
 }
 
 std::string Version() { return PUSHID_VERSION; }
-
-MaybeError WriteModelFile(const std::string& path, const FittedModel& model, int num_threads,
-                          double begin) {
-  RunInfo run;
-  char date[32];
-  const std::time_t now = std::time(nullptr);
-  std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
-  run.date = date;
-  char host[256] = "";
-  if (gethostname(host, sizeof host - 1) == 0) run.host = host;
-  run.model_path = path;
-  run.num_threads = num_threads;
-  run.total_seconds = Now() - begin;
-  return WriteJson(path, ToJson(model, run));
-}
 
 namespace {
 

@@ -76,8 +76,6 @@ class TrainingLine {
   double made_ = Now(), start_ = 0.0, done_at_start_ = 0.0;
 };
 
-struct FittedModel;  // ident/model/fitted_model.h
-
 // Returns the value, or throws the Error, which RunApp prints once everything that was open is
 // closed. The libraries under the programs return their errors.
 template <typename T>
@@ -90,10 +88,6 @@ inline void OrFail(const MaybeError& error) {
 }
 
 std::string Version();
-
-// A model's file, with date, host, threads and the seconds since `begin` (of Now()).
-MaybeError WriteModelFile(const std::string& path, const FittedModel& model, int num_threads,
-                          double begin);
 
 // The threads of the system's BLAS, which sparse normal equations and training ask for
 // products; does nothing where the BLAS is another one, or the user has said

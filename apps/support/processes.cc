@@ -1,10 +1,9 @@
-// apps: fork, limits, exec.
+// apps: fork, exec, signals.
 #include "apps/support/processes.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,16 +23,10 @@ constexpr int kCannotStart = 127;
 constexpr std::size_t kLongestArgument = 128 * 1024 - 1;  // Linux: MAX_ARG_STRLEN
 
 // Runs between fork and exec, where only some calls are safe.
-[[noreturn]] void RunInChild(const ChildSpec& spec, char* const* argv, pid_t parent, int out,
-                             int err) {
+[[noreturn]] void RunInChild(char* const* argv, pid_t parent, int out, int err) {
   setpgid(0, 0);  // so that a terminal's Ctrl-C reaches the batch alone
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(kCannotStart);  // it died before that was asked for
-  if (spec.memory_limit_mb > 0) {
-    const rlim_t bytes = static_cast<rlim_t>(spec.memory_limit_mb) << 20;
-    const rlimit limit{bytes, bytes};
-    setrlimit(RLIMIT_AS, &limit);
-  }
   const int nothing = open("/dev/null", O_RDONLY);
   dup2(nothing, STDIN_FILENO);
   dup2(out, STDOUT_FILENO);
@@ -75,7 +68,7 @@ Result<pid_t> StartChild(const ChildSpec& spec) {
   const bool opened = err >= 0;
   const pid_t parent = getpid();
   const pid_t child = opened ? fork() : -1;
-  if (child == 0) RunInChild(spec, argv.data(), parent, out, err);
+  if (child == 0) RunInChild(argv.data(), parent, out, err);
   const std::string reason = std::strerror(errno);
   if (out >= 0) close(out);
   if (err >= 0) close(err);

@@ -1,14 +1,12 @@
-// apps: other processes: programs started as children, with their output in files and their limits
+// apps: other processes: programs started as children, with their output in files
 // (they die with their parent), programs run in place of this one, one process at a time in a
 // folder, signals as things to read (Linux).
 #pragma once
 
-#include <poll.h>
-#include <sys/signalfd.h>
 #include <sys/types.h>
-#include <unistd.h>
 
 #include <csignal>
+#include <ctime>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,7 +18,6 @@ namespace pushid {
 struct ChildSpec {
   std::vector<std::string> command;  // program and arguments
   std::string out, err;              // files; appended to
-  int memory_limit_mb = 0;           // of address space; 0: none
 };
 
 // Errors: the program or a file cannot be opened, no process can be had.
@@ -74,28 +71,25 @@ class SignalReader {
     sigemptyset(&taken_);
     for (int number : {SIGINT, SIGTERM, SIGCHLD}) sigaddset(&taken_, number);
     sigprocmask(SIG_BLOCK, &taken_, &before_);
-    descriptor_ = signalfd(-1, &taken_, SFD_NONBLOCK | SFD_CLOEXEC);
   }
   ~SignalReader() {
     Wait(0);  // an interrupt that came twice would end the process where signals are free again
-    close(descriptor_);
     sigprocmask(SIG_SETMASK, &before_, nullptr);
   }
 
   // Waits until a child ends, an interrupt comes, or the time is up.
   void Wait(int milliseconds) {
-    pollfd waiting{descriptor_, POLLIN, 0};
-    poll(&waiting, 1, milliseconds);
-    signalfd_siginfo info;
-    while (read(descriptor_, &info, sizeof info) == sizeof info) {
-      if (info.ssi_signo != SIGCHLD) interrupted_ = true;
+    timespec time{milliseconds / 1000, milliseconds % 1000 * 1000000L};
+    for (int taken = sigtimedwait(&taken_, nullptr, &time); taken > 0;
+         taken = sigtimedwait(&taken_, nullptr, &time)) {
+      if (taken != SIGCHLD) interrupted_ = true;
+      time = {};  // what else has come is taken without waiting
     }
   }
   bool interrupted() const { return interrupted_; }
 
  private:
   sigset_t taken_, before_;
-  int descriptor_ = -1;
   bool interrupted_ = false;
 };
 

@@ -180,7 +180,7 @@ bool LineReader::NextRow(std::string_view* line) {
 }
 
 // Bytes; a manifest of a million recordings is smaller. /dev/zero would never end.
-constexpr std::size_t kLargestText = std::size_t{1} << 30;
+constexpr std::size_t kLargestText = std::size_t{1} << 28;
 
 Result<std::string> ReadWholeFile(const std::string& path) {
   return Caught([&] {

@@ -267,7 +267,6 @@ constexpr double kDegree = M_PI / 180.0;
 constexpr double kAside = 60.0 * kDegree, kAgainst = 120.0 * kDegree;
 constexpr double kTooMuch = 3.0, kTooLittle = 0.25;           // of an external push
 constexpr double kNetFactor = 3.0;                            // of a net one, either way
-constexpr double kStrongPush = 1000.0;                        // N
 constexpr double kStandsOut = 3.0;                            // times the largest of the other rows
 constexpr double kLightest = 25.0, kHeaviest = 130.0;         // kg
 constexpr double kStature = 2.0;                              // over the rod
@@ -353,8 +352,6 @@ class Judge {
   void LookAtRows(const ScenePush& push) {
     const double peak = Peak(push);
     const std::string who = Who(push.person);
-    if (peak > kStrongPush) Add(FindingKind::kStrong, who, peak);
-    if (FirstRowStandsOut(push.force)) Add(FindingKind::kFirstRow, who, Length(push.force[0]));
     const double rest = RestingForce(push, r_.scene.dt);
     if (rest > 0.0) Add(FindingKind::kZero, who, rest);
     if (rest == 0.0 && HasNoEnd(push, r_.num_frames())) {
@@ -425,51 +422,42 @@ const std::vector<FindingRow>& Names(FindingKind) {
   using Kind = FindingKind;
   static const std::vector<FindingRow> kRows = {
       {"push against motion", Kind::kAgainst, "the person moves against the push", "degrees off",
-       "is the push's sign right, and are `up` and `forward`?", true},
+       "is the push's sign right, and are `up` and `forward`?"},
       {"push beside motion", Kind::kAside, "the person moves in another direction than the push",
-       "degrees off", "are `up` and `forward` right, and the direction of the push?", true},
+       "degrees off", "are `up` and `forward` right, and the direction of the push?"},
       {"impulse", Kind::kGain, "the speed that the push gives is not its impulse over the mass",
        "times it",
        "is the force in N (1 kN = 1000 N, 1 kgf = 9.81 N, 1 lbf = 4.45 N), its gain right, and the "
-       "mass in kg?",
-       true},
+       "mass in kg?"},
       {"net impulse", Kind::kNetGain,
        "the motion during a net push is not what its force makes of the mass", "times it",
-       "was it computed from this motion, with this mass and in N? a measured push is external",
-       true},
+       "was it computed from this motion, with this mass and in N? a measured push is external"},
       {"late push", Kind::kLate, "the person moves before being pushed", "s",
        "is the push's start right (start_frame, first_frame), and the sensor's clock "
        "(pushid-push --sensor_start)? a person who moves all the time needs "
-       "initial_velocity",
-       true},
+       "initial_velocity"},
       {"early push", Kind::kEarly, "the person moves long after being pushed", "s late",
        "is the push's start right (start_frame, first_frame), and the sensor's clock "
-       "(pushid-push --sensor_start)?",
-       true},
+       "(pushid-push --sensor_start)?"},
       {"force at rest", Kind::kZero, "the force does not return to zero", "N at the end",
-       "the sensor has an offset, which counts as a push: subtract it (pushid-push does)", true},
+       "the sensor has an offset, which counts as a push: subtract it (pushid-push does)"},
       {"push without an end", Kind::kNoEnd, "the push ends while its force is large",
-       "N at the end", "is the record cut off? Give all of it", true},
+       "N at the end", "is the record cut off? Give all of it"},
       {"flat top", Kind::kClipped, "the force rises and then stays at its largest value", "N",
        "the sensor's range was exceeded, and the push was larger: leave these recordings out "
-       "(--leave_out)",
-       true},
-      {"strong push", Kind::kStrong, "the push is above 1 kN", "N",
-       "people rarely push so hard: is its unit N, and is its window right?", false},
-      {"first row", Kind::kFirstRow, "the push's first row stands out", "N",
-       "the person already moves when the push begins: see pushid-push --initial_velocity", false},
+       "(--leave_out)"},
       {"mass", Kind::kMass, "the mass is unusual for the height of the hip", "kg",
-       "is mass_kg right, and in kg?", true},
+       "is mass_kg right, and in kg?"},
       {"rod", Kind::kRod, "the distance between hip and ankles is implausible", "m",
-       "are `joints` and the unit (length_unit) right?", true},
+       "are `joints` and the unit (length_unit) right?"},
       {"speed", Kind::kSpeed, "the hip is implausibly fast", "m/s",
-       "does a marker jump there, and are length_unit and fps right?", true},
+       "does a marker jump there, and are length_unit and fps right?"},
       {"frame rate", Kind::kRate, "the frame rate is unusual", "per second",
-       "is fps really frames per second?", true},
+       "is fps really frames per second?"},
       {"facing", Kind::kFacing, "according to the ankles people do not face forward", "degrees off",
-       "are `up` and `forward` right, and the ankles not exchanged?", true},
+       "are `up` and `forward` right, and the ankles not exchanged?"},
       {"copy", Kind::kCopy, "the same motion is repeated", "",
-       "copies add nothing and count once: leave them out (--leave_out)", true},
+       "copies add nothing and count once: leave them out (--leave_out)"},
   };
   return kRows;
 }
@@ -486,24 +474,20 @@ std::vector<Finding> FindingsOf(const PendulumRecording& recording) {
 }
 
 // The facing follows from the line between the ankles, where it is long enough.
-std::vector<Finding> FacingFindings(const Recording& recording) {
+std::vector<Finding> FacingFindings(const std::vector<Recording>& recordings) {
   std::vector<Finding> found;
-  // Forward is the way of the push: a group that nobody and nothing pushes may face each other.
-  const bool moved = !recording.pushes.empty() || !recording.ground.empty();
-  if (!moved && recording.people.size() > 1) return found;
-  for (const RecordedPerson& person : recording.people) {
-    const Eigen::Vector2d to_the_left = (person.left_ankle[0] - person.right_ankle[0]).head<2>();
-    const double facing = std::fabs(std::atan2(-to_the_left.x(), to_the_left.y()));
-    if (to_the_left.norm() < kApart || facing <= kFacesElsewhere) continue;
-    found.push_back(
-        {FindingKind::kFacing, recording.id, person.subject_id, std::round(facing / kDegree)});
+  for (const Recording& recording : recordings) {
+    // Forward is the way of the push: a group that nobody and nothing pushes may face each other.
+    const bool moved = !recording.pushes.empty() || !recording.ground.empty();
+    if (!moved && recording.people.size() > 1) continue;
+    for (const RecordedPerson& person : recording.people) {
+      const Eigen::Vector2d to_the_left = (person.left_ankle[0] - person.right_ankle[0]).head<2>();
+      const double facing = std::fabs(std::atan2(-to_the_left.x(), to_the_left.y()));
+      if (to_the_left.norm() < kApart || facing <= kFacesElsewhere) continue;
+      found.push_back(
+          {FindingKind::kFacing, recording.id, person.subject_id, std::round(facing / kDegree)});
+    }
   }
-  return found;
-}
-
-std::vector<Finding> FindingsOf(const Recording& recording) {
-  std::vector<Finding> found = FindingsOf(MakePendulumRecording(recording));
-  for (Finding& finding : FacingFindings(recording)) found.push_back(std::move(finding));
   return found;
 }
 
@@ -534,12 +518,6 @@ std::vector<Finding> FindingsOf(const std::vector<PendulumRecording>& recordings
   return found;
 }
 
-std::vector<Finding> FitFindings(std::vector<Finding> findings) {
-  const auto other = [](const Finding& finding) { return !RowOf(finding.kind).in_fits; };
-  findings.erase(std::remove_if(findings.begin(), findings.end(), other), findings.end());
-  return findings;
-}
-
 std::vector<std::string> FindingTexts(const std::vector<Finding>& findings) {
   std::vector<std::string> texts;
   for (const FindingRow& row : Names(FindingKind{})) {
@@ -561,14 +539,6 @@ std::vector<std::string> FindingTexts(const std::vector<Finding>& findings) {
 Warnings FindingWarnings(const std::vector<Finding>& findings) {
   const std::vector<std::string> texts = FindingTexts(findings);
   return {texts.begin(), texts.end()};
-}
-
-Warnings FacingWarnings(const std::vector<Recording>& recordings) {
-  std::vector<Finding> found;
-  for (const Recording& recording : recordings) {
-    for (Finding& finding : FacingFindings(recording)) found.push_back(std::move(finding));
-  }
-  return FindingWarnings(found);
 }
 
 }  // namespace pushid

@@ -69,8 +69,6 @@ enum class FindingKind {
   kZero,
   kNoEnd,
   kClipped,  // of a push and its motion
-  kStrong,
-  kFirstRow,  // of a push
   kMass,
   kRod,
   kSpeed,
@@ -84,7 +82,6 @@ struct FindingRow {
   const char* name;
   FindingKind value;
   const char *what, *unit, *advice;
-  bool in_fits;  // otherwise pushid-inspect alone tells it
 };
 const std::vector<FindingRow>& Names(FindingKind);
 
@@ -95,11 +92,11 @@ struct Finding {
   double value = 0.0;  // in the row's unit
 };
 
-// Motion and pushes of a recording; its first frame's ankles, which a pendulum has no more, are
-// looked at by FacingFindings.
+// Findings in the motion and the pushes of a recording.
 std::vector<Finding> FindingsOf(const PendulumRecording& recording);
-std::vector<Finding> FacingFindings(const Recording& recording);
-std::vector<Finding> FindingsOf(const Recording& recording);
+// Findings in the ankles of the first frame, before any axes are turned: programs tell them as they
+// load recordings.
+std::vector<Finding> FacingFindings(const std::vector<Recording>& recordings);
 
 // Indices of earlier recordings with the same motion under another id, one for each; -1: none.
 // (A bootstrap's replica holds a recording several times, under one id.)
@@ -108,13 +105,7 @@ std::vector<int> CopyOf(const std::vector<PendulumRecording>& recordings);
 // Findings of all recordings, copies among them.
 std::vector<Finding> FindingsOf(const std::vector<PendulumRecording>& recordings);
 
-// Warnings of FacingFindings, as recordings are loaded.
-Warnings FacingWarnings(const std::vector<Recording>& recordings);
-
-// The findings that a fit, a prediction and pushid-push report.
-std::vector<Finding> FitFindings(std::vector<Finding> findings);
-
-// One sentence a kind: "the push is above 1 kN in 2 cases (a: 1650 N; b: 1219 N); ...".
+// One sentence a kind: "the force does not return to zero in 2 cases (a: 5 N at the end; ...); ...".
 std::vector<std::string> FindingTexts(const std::vector<Finding>& findings);
 Warnings FindingWarnings(const std::vector<Finding>& findings);
 

@@ -280,11 +280,6 @@ class MotionInspector {
     if (!motion_.up.empty() && motion_.up != "+" + up_ && motion_.up != up_) {
       found_.Warn("the file declares " + motion_.up + " as up, but the person stands along " + up_);
     }
-    const double lean = std::acos(std::fmin(1.0, rod_.cwiseAbs().maxCoeff() / rod_.norm()));
-    if (lean > 0.35) {
-      found_.Warn("the person leans " + Rounded(lean * 180.0 / 3.14159265358979323846, 3) +
-                  " degrees at the start");
-    }
   }
 
   void Start() {

@@ -256,8 +256,7 @@ void InspectManifest(Inspection* found) {
       InspectPlates(entry, plates, recording.people[plates.person], found);
     }
     pendulums.push_back(MakePendulumRecording(recording));
-    const std::vector<Finding> more = FacingFindings(recording);
-    facing.insert(facing.end(), more.begin(), more.end());
+    for (Finding& finding : FacingFindings({recording})) facing.push_back(std::move(finding));
   }
   std::vector<Finding> findings = FindingsOf(pendulums);
   findings.insert(findings.end(), facing.begin(), facing.end());
@@ -275,60 +274,19 @@ void InspectManifest(Inspection* found) {
   found->Fact("subjects", ListOfNames({subjects.begin(), subjects.end()}));
 }
 
-// Hip, ankles, feet and pelvis of a motion, as indices into its names.
-struct FoundPlaces {
-  std::optional<PendulumJoints> joints;
-  PelvisSides pelvis;
-  std::string body;
-};
-
-// Warns where hip and ankles cannot be found.
-FoundPlaces PlacesOf(const PointMotion& motion, const ColumnMapping& mapping, Inspection* found) {
+// The points of a motion, or the joints of a skeleton. Warns where hip and ankles cannot be found.
+void LookAtPoints(const PointMotion& motion, const ColumnMapping& mapping, Inspection* found) {
   const BvhSkeleton* skeleton = motion.skeleton.get();
+  found->Fact(skeleton != nullptr ? "joints" : "points", ListOfNames(motion.names));
   const auto joints = ChoosePendulum(motion.path, motion.names, skeleton, mapping.joints);
   if (!joints.ok()) {
     found->Warn(joints.error().message);
-    return {};
+    return InspectMotion(motion, std::nullopt, {}, found);
   }
   const auto roles =
       ChooseRoles(motion.path, motion.names, skeleton, joints.value(), mapping.joints);
-  return {joints.value(), SidesOf(roles), RolesText(roles)};
-}
-
-void LookAtPoints(const PointMotion& motion, const ColumnMapping& mapping, Inspection* found) {
-  found->Fact("points", ListOfNames(motion.names));
-  const FoundPlaces places = PlacesOf(motion, mapping, found);
-  if (!places.body.empty()) found->Fact("body", places.body);
-  InspectMotion(motion, places.joints, places.pelvis, found);
-}
-
-// A joint of a BVH file is never hidden, so that only hip, its sides and the feet are kept: files
-// of a gigabyte fit.
-void LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
-  FoundPlaces places;  // indices into the joints kept
-  PointReadOptions options;
-  options.choose = [&](const PointMotion& file) {
-    places = PlacesOf(file, mapping, found);
-    std::vector<int> kept;
-    const auto keep = [&kept](std::vector<int>* place) {
-      if (place->empty()) return;
-      kept.push_back((*place)[0]);
-      *place = {static_cast<int>(kept.size()) - 1};
-    };
-    if (!places.joints) return std::vector<int>{0};
-    for (const PendulumTrack& row : kPendulumTracks) keep(&((*places.joints).*row.joints));
-    keep(&places.pelvis.left);
-    keep(&places.pelvis.right);
-    return kept;
-  };
-  PointMotion motion = OrThrow(ReadBvhPoints(found->path, options));
-  found->Fact("joints", ListOfNames(motion.names));
-  if (!places.body.empty()) found->Fact("body", places.body);
-  std::vector<std::string> kept;
-  for (int joint : motion.chosen) kept.push_back(motion.names[joint]);
-  motion.names = std::move(kept);
-  ChoosePoints({}, &motion);
-  InspectMotion(motion, places.joints, places.pelvis, found);
+  found->Fact("body", RolesText(roles));
+  InspectMotion(motion, joints.value(), SidesOf(roles), found);
 }
 
 void LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
@@ -432,7 +390,6 @@ void Look(const ColumnMapping& mapping, Inspection* found) {
     return InspectManifest(found);
   }
   found->format = Title(*format);
-  if (HasSkeleton(*format)) return LookAtBvh(mapping, found);
   if (*format == MotionFormat::kC3d) return LookAtC3d(mapping, found);
   if (HoldsCrowd(*format)) return InspectCrowd(OrThrow(ReadPointMotion(path, *format)), found);
   if (!RowOf(*format).table) {

@@ -215,7 +215,7 @@ Diagnostics Diagnose(const FitProblem& problem, const SolveStart& best,
   const Conditioning conditioning = ComputeConditioning(problem, best.from, at_start);
   d.start = {conditioning.condition_number, conditioning.null_directions,
              WithoutEffect(problem, best.from, at_start), best.notes,
-             FitFindings(FindingsOf(problem.recordings()))};
+             FindingsOf(problem.recordings())};
   const ResidualsByRecording raw = RawResiduals(problem, best.to);
   d.recordings = DiagnoseRecordings(problem, best.to, raw);
   d.whiteness = DiagnoseWhiteness(problem, raw);

@@ -248,7 +248,7 @@ bool AnyGroup(const std::vector<PendulumRecording>& recordings) {
 
 Warnings WarningsBefore(const std::vector<PendulumRecording>& recordings,
                         const FitOptions& options) {
-  Warnings warnings = FindingWarnings(FitFindings(FindingsOf(recordings)));
+  Warnings warnings = FindingWarnings(FindingsOf(recordings));
   if (AnyGroup(recordings) && !options.model.interaction.Any()) {
     warnings.emplace_back(
         "recordings contain several people, but the model has no interaction between them "

@@ -1,8 +1,11 @@
 // ident: a fitted model to JSON and back.
 #include "ident/model/model_json.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 
 #include "datasets/files/json_file.h"
 #include "ident/model/model_fields.h"
@@ -113,6 +116,21 @@ nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
   JsonArchive archive(&json);
   ModelFields(archive, const_cast<FittedModel&>(model), run);
   return json;
+}
+
+MaybeError WriteFittedModel(const std::string& path, const FittedModel& model, int num_threads,
+                            double total_seconds) {
+  RunInfo run;
+  char date[32];
+  const std::time_t now = std::time(nullptr);
+  std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
+  run.date = date;
+  char host[256] = "";
+  if (gethostname(host, sizeof host - 1) == 0) run.host = host;
+  run.model_path = path;
+  run.num_threads = num_threads;
+  run.total_seconds = total_seconds;
+  return WriteJson(path, ToJson(model, run));
 }
 
 nlohmann::ordered_json ToJson(const Behaviour& behaviour) { return JsonOf(behaviour); }

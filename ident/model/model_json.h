@@ -19,6 +19,10 @@ struct RunInfo {
 
 nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run);
 
+// Writes the file of a run that ends now, on this host, after so many seconds.
+MaybeError WriteFittedModel(const std::string& path, const FittedModel& model, int num_threads,
+                            double total_seconds);
+
 // Errors: not a pushid model, a newer format, missing or wrong entries by name, with the version
 // that wrote them where it is another one. laws: those of the caller's own that the model may have
 // been fitted with; one that the file names and that is not here is an error.

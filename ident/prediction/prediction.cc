@@ -149,7 +149,7 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
 
 Warnings InputWarnings(const IdentifiedModel& model,
                        const std::vector<PendulumRecording>& recordings) {
-  Warnings warnings = FindingWarnings(FitFindings(FindingsOf(recordings)));
+  Warnings warnings = FindingWarnings(FindingsOf(recordings));
   const bool together =
       std::any_of(recordings.begin(), recordings.end(),
                   [](const PendulumRecording& r) { return r.scene.num_people() > 1; });

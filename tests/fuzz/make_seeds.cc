@@ -113,7 +113,6 @@ folds = 4
 bootstrap = 1_000
 seed = 0x7f
 time_limit_s = 6e1
-memory_limit_mb = 512
 [[variant]]
 name = "physics"
 flags = ["--self_force=none"]

@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const BatchPlan& plan = read.value();
   Demand(!plan.manifest.empty() && !plan.dir.empty() && !plan.variants.empty());
-  Demand(plan.folds >= 0 && plan.folds != 1 && plan.bootstrap >= 0 && plan.memory_limit_mb >= 0);
+  Demand(plan.folds >= 0 && plan.folds != 1 && plan.bootstrap >= 0);
   Demand(plan.time_limit_s >= 0.0);
   for (const BatchVariant& variant : plan.variants) Demand(!variant.name.empty());
   return 0;

@@ -80,7 +80,7 @@ def told(recordings, fault):
         with open(f"{name}.json", "w", encoding="utf-8") as file:
             json.dump({"recordings": [entry]}, file)
     inspected = studies.run("pushid-inspect", *(f"{name}.json" for name, *_ in recordings), out="json_out", keep=False).json
-    return sum(any(" case" in line and "above 1 kN" not in line for line in one["warnings"]) for one in inspected)
+    return sum(any(" case" in line for line in one["warnings"]) for one in inspected)
 
 
 def findings():

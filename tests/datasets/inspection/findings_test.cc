@@ -120,7 +120,7 @@ TEST(Findings, FaultsOfAPushAreTold) {
     EXPECT_EQ(kinds([](PushedPerson* p) { p->scale = 1e-3; }), Kinds{FindingKind::kGain}) << stands;
     EXPECT_EQ(kinds([](PushedPerson* p) { p->scale = 1.0 / 9.81; }), Kinds{FindingKind::kGain});
     EXPECT_EQ(kinds([](PushedPerson* p) { p->scale = 1000.0; }),
-              (Kinds{FindingKind::kGain, FindingKind::kStrong}));
+              Kinds{FindingKind::kGain});
     EXPECT_EQ(kinds([](PushedPerson* p) { p->late = 0.3; }), Kinds{FindingKind::kLate}) << stands;
     EXPECT_EQ(kinds([](PushedPerson* p) { p->rest = 6.0; }), Kinds{FindingKind::kZero}) << stands;
   }
@@ -256,16 +256,16 @@ TEST(Findings, CopiesNameEachOther) {
 TEST(Findings, OneSentenceAKind) {
   std::vector<Finding> findings;
   for (const char* id : {"a", "b", "c", "d", "e"}) {
-    findings.push_back({FindingKind::kStrong, id, "", 1650.0});
+    findings.push_back({FindingKind::kClipped, id, "", 1650.0});
   }
   findings.push_back({FindingKind::kMass, "a", "anna", 18.0});
   EXPECT_EQ(FindingTexts(findings),
             (std::vector<std::string>{
-                "the push is above 1 kN in 5 cases (a: 1650 N; b: 1650 N; c: 1650 N; d: 1650 N; "
-                "...); people rarely push so hard: is its unit N, and is its window right?",
+                "the force rises and then stays at its largest value in 5 cases (a: 1650 N; b: "
+                "1650 N; c: 1650 N; d: 1650 N; ...); the sensor's range was exceeded, and the push "
+                "was larger: leave these recordings out (--leave_out)",
                 "the mass is unusual for the height of the hip in 1 case (a, anna: 18 kg); is "
                 "mass_kg right, and in kg?"}));
-  EXPECT_EQ(FitFindings(findings).size(), 1u);  // a fit does not tell of strong pushes
   EXPECT_TRUE(RowsAreInOrder(Names(FindingKind{})));
 }
 
