@@ -120,8 +120,10 @@ nlohmann::ordered_json ScoresJson(const std::vector<CrossValidation>& validation
 
 int Run() {
   FoldScheme scheme;
-  CheckExcludes({"scheme", "folds", "repeats"}, "folds_file",
+  if (!FLAGS_folds_file.empty()) {
+    RefuseGiven({"scheme", "folds", "repeats"},
                 "--folds_file already gives the folds; leave --{} out");
+  }
   OrFail(ParseName("--scheme", FLAGS_scheme, &scheme));
   const Setups setups = SetupsFromFlags();
   MakePredictors(CandidatesOf(setups));  // refuses wrong flags before any recording is read

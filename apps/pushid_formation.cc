@@ -464,8 +464,10 @@ int Run() {
   CheckRange("direction", FLAGS_direction, -360, 360);
   if (FLAGS_mass != 0.0) CheckRange("mass", FLAGS_mass, 1, 400);
   CheckRange("duration", FLAGS_duration, 0, 3600);
-  CheckExcludes({"mass"}, "recordings",
+  if (!FLAGS_recordings.empty()) {
+    RefuseGiven({"mass"},
                 "--recordings gives the recorded people's mass and rod length; leave out --{}");
+  }
   IdentifiedModel model = LoadFlaggedModel();
   FormationFlags flags = FormationFlagsFromCommandLine(model);
   Scene& scene = flags.scene;

@@ -44,7 +44,7 @@ int RunWaves() {
 constexpr double kInspectionWidth = 1000;
 constexpr std::size_t kMostPoints = 1500;  // of a line: more than there are pixels
 
-// Broken where values are missing.
+// A chart of one line, which is broken where values are missing.
 Chart SignalChart(const std::string& title, double rate_hz, const std::vector<double>& values) {
   Chart chart{title, "time, s"};
   chart.lines.push_back({{}, kMeasuredLook});

@@ -71,9 +71,11 @@ RestorationFlags CheckedFlags() {
   if (FLAGS_frames != 0 && (FLAGS_frames < 2 || FLAGS_frames > kMostFrames)) {
     throw Error{"--frames must be 0, or lie between 2 and " + std::to_string(kMostFrames)};
   }
-  CheckExcludes({"push_scale", "push_again"}, "observed",
-                "--observed is for the recorded motion, and --{} for "
-                "another push than made it; leave one out");
+  if (ObservedFrames() > 0) {
+    RefuseGiven({"push_scale", "push_again"},
+                "--observed is for the recorded motion, and --{} for another push than made it; "
+                "leave one out");
+  }
   OrFail(CheckOutputFiles({FLAGS_poses_out, FLAGS_out}));
   return restoration;
 }

@@ -68,7 +68,9 @@ std::vector<SensorChoice> SensorsFromFlags() {
 }
 
 void CheckSensors() {
-  CheckNeeds(kOfOneSensor, "sensor", ": name the file of its forces");
+  if (FLAGS_sensor.empty()) {
+    RefuseGiven(kOfOneSensor, " needs --sensor: name the file of its forces");
+  }
   if (SensorsListed()) {
     RefuseGiven(kOfOneSensor, " is given in the list, " + FLAGS_sensor + "; leave it out");
   }

@@ -45,8 +45,10 @@ using namespace pushid;
 SyntheticOptions StudyFromCommandLine() {
   Require("out", FLAGS_out, "name the folder to write");
   OrFail(CheckOutputFolder("out", FLAGS_out));
-  CheckExcludes({"stance", "delay", "truth_noise"}, "model",
+  if (!FLAGS_model.empty()) {
+    RefuseGiven({"stance", "delay", "truth_noise"},
                 "--model sets the parameters of the people; leave --{} out");
+  }
   SyntheticOptions study;
   TakeInRange("people", FLAGS_people, 1, 10000, &study.subjects);
   TakeInRange("recordings_per_person", FLAGS_recordings_per_person, 1, 10000,

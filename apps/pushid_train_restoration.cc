@@ -40,20 +40,15 @@ DEFINE_string(more_settings, "",
               "--setting); they are neither fitted nor scored");
 namespace {
 
-bool AtDefault(const char* flag) {
-  return gflags::GetCommandLineFlagInfoOrDie(flag).current_value ==
-         gflags::GetCommandLineFlagInfoOrDie(flag).default_value;
-}
-
 // Throws if a flag has no effect on the kind.
 void CheckKind(RestorationKind kind, RestorationView view) {
   if (view == RestorationView::kNeighbours && !RowOf(kind).sees_neighbours) {
     throw Error{"--sees=neighbours needs --kind=window"};
   }
   const bool chain = kind == RestorationKind::kCvae;
-  if (!chain && !AtDefault("halves")) throw Error{"--nohalves needs --kind=cvae"};
-  if (!chain && !AtDefault("training")) throw Error{"--training needs --kind=cvae"};
-  if (!AtDefault("coordinates") && (!chain || view == RestorationView::kPose)) {
+  if (!chain && Given("halves")) throw Error{"--nohalves needs --kind=cvae"};
+  if (!chain && Given("training")) throw Error{"--training needs --kind=cvae"};
+  if (Given("coordinates") && (!chain || view == RestorationView::kPose)) {
     throw Error{
         "--coordinates needs --kind=cvae --sees=pendulum: without a pendulum there is no tip"};
   }

@@ -1,5 +1,4 @@
 // apps: expanding plans, running jobs, and reading what they left.
-#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <set>
@@ -298,12 +297,6 @@ JobResult ReadResult(const BatchPlan& plan, const BatchJob& job) {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double Since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
 // The last line of a log that gives a reason; warnings do not count.
 std::string LastLine(const std::string& path) {
   std::ifstream file(path);
@@ -321,7 +314,7 @@ struct Running {
   std::vector<std::vector<std::string>> commands;
   size_t step = 0;
   pid_t pid = 0;
-  Clock::time_point begin;
+  double begin = 0.0;  // of Now()
   bool out_of_time = false;
   FolderLock lock;
 };
@@ -329,7 +322,7 @@ struct Running {
 class Pool {
  public:
   Pool(const BatchPlan& plan, int at_once, const std::function<void(const BatchOutcome&)>& progress)
-      : plan_(plan), at_once_(at_once), progress_(progress), begin_(Clock::now()) {}
+      : plan_(plan), at_once_(at_once), progress_(progress), begin_(Now()) {}
 
   Result<BatchOutcome> Run(const std::vector<const BatchJob*>& waiting, int skipped) {
     outcome_.skipped = skipped;
@@ -341,7 +334,7 @@ class Pool {
       }
       outcome_.left = static_cast<int>(waiting.size() - next + running_.size());
       const int finished = outcome_.done + outcome_.failed;
-      outcome_.seconds_left = finished > 0 ? Since(begin_) / finished * outcome_.left : 0.0;
+      outcome_.seconds_left = finished > 0 ? (Now() - begin_) / finished * outcome_.left : 0.0;
       progress_(outcome_);
       if (signals_.interrupted() || running_.empty()) break;
       signals_.Wait(plan_.time_limit_s > 0.0 ? 50 : 500);  // ms
@@ -374,7 +367,7 @@ class Pool {
     // locked.
     if (const MaybeError stuck = Empty(running.folder)) return Fail(running, stuck->ToString());
     running.commands = JobCommands(plan_, job);
-    running.begin = Clock::now();
+    running.begin = Now();
     if (const MaybeError failed = Start(&running)) return Fail(running, failed->ToString());
     running_.push_back(std::move(running));
   }
@@ -417,7 +410,7 @@ class Pool {
     }
     if (plan_.time_limit_s <= 0.0) return;
     for (Running& running : running_) {
-      if (running.out_of_time || Since(running.begin) < plan_.time_limit_s) continue;
+      if (running.out_of_time || Now() - running.begin < plan_.time_limit_s) continue;
       running.out_of_time = true;
       KillChild(running.pid, SIGKILL);
     }
@@ -467,7 +460,7 @@ class Pool {
   // reason: empty when it is done.
   static MaybeError WriteStatus(const Running& running, const std::string& reason) {
     const BatchJob& job = *running.job;
-    const double seconds = running.commands.empty() ? 0.0 : Since(running.begin);
+    const double seconds = running.commands.empty() ? 0.0 : Now() - running.begin;
     const nlohmann::ordered_json json = {
         {"schema", "pushid-job/1"},
         {"id", job.id},
@@ -484,8 +477,8 @@ class Pool {
   // Ends the running jobs, which have no status yet and will be redone.
   void EndAll() {
     for (const Running& running : running_) KillChild(running.pid, SIGKILL);
-    const auto begin = Clock::now();
-    while (!running_.empty() && Since(begin) < 10.0) {
+    const double begin = Now();
+    while (!running_.empty() && Now() - begin < 10.0) {
       signals_.Wait(100);
       for (ChildEnd end = NextEnded(); end.pid != 0; end = NextEnded()) {
         running_.erase(std::remove_if(running_.begin(), running_.end(),
@@ -498,7 +491,7 @@ class Pool {
   const BatchPlan& plan_;
   const int at_once_;
   const std::function<void(const BatchOutcome&)>& progress_;
-  const Clock::time_point begin_;
+  const double begin_;
   SignalReader signals_;
   std::vector<Running> running_;
   BatchOutcome outcome_;

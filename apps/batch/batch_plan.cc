@@ -56,7 +56,7 @@ class PlanReader {
     std::string dir;
     Get(output, "dir", "a string", &dir);
     if (dir.empty()) Fail(output, "[output] needs dir = \"out\"");
-    plan_.dir = Resolve(dir);
+    plan_.dir = ResolvePath(path_, dir);
     return plan_;
   }
 
@@ -121,10 +121,6 @@ class PlanReader {
     *value = static_cast<int>(count);
   }
 
-  std::string Resolve(const std::string& file) const {
-    return (std::filesystem::path(path_).parent_path() / file).string();
-  }
-
   void Data() {
     const toml::table* data = Table("data", {"recordings", "setting", "ids", "leave_out"});
     std::string manifest;
@@ -132,7 +128,7 @@ class PlanReader {
         &manifest);
     if (manifest.empty()) Fail(*data, "[data] needs recordings = \"M/manifest.json\"");
     for (const std::string& path : ManifestPaths(manifest)) {
-      plan_.manifest += (plan_.manifest.empty() ? "" : ",") + Resolve(path);
+      plan_.manifest += (plan_.manifest.empty() ? "" : ",") + ResolvePath(path_, path);
     }
     Get(*data, "setting", "a string", &plan_.setting);
     GetStrings(*data, "ids", &plan_.ids);

@@ -54,18 +54,6 @@ bool Changed(const FlagInfo& flag) {
   return numbers ? now != before : flag.current_value != flag.default_value;
 }
 
-// Whether a flag is given, and not a switch that is off by default and given as off.
-bool Asks(const std::string& name) {
-  const FlagInfo flag = gflags::GetCommandLineFlagInfoOrDie(name.c_str());
-  const bool off = flag.type == "bool" && flag.current_value == "false" && !Changed(flag);
-  return !flag.is_default && !flag.current_value.empty() && !off;
-}
-
-bool HasEffect(const std::string& name) {
-  FlagInfo flag;
-  return gflags::GetCommandLineFlagInfo(name.c_str(), &flag) && Changed(flag);
-}
-
 // The headings of --help, in their order, and the files of flags below each.
 struct Heading {
   const char* title;
@@ -254,26 +242,18 @@ void PrepareHeap() {
 
 }  // namespace
 
-void CheckNeeds(const std::vector<std::string>& flags, const std::string& other,
-                const std::string& why) {
-  if (HasEffect(other)) return;
-  for (const std::string& name : flags) {
-    if (Asks(name)) throw Error{"--" + name + " needs --" + other + why};
-  }
-}
-
-void CheckExcludes(const std::vector<std::string>& flags, const std::string& other,
-                   const std::string& why) {
-  if (!HasEffect(other)) return;
-  for (const std::string& name : flags) {
-    if (!Asks(name)) continue;
-    std::string sentence = why;
-    const size_t place = sentence.find("{}");
-    throw Error{place == std::string::npos ? sentence : sentence.replace(place, 2, name)};
-  }
-}
-
 bool Given(const char* flag) { return !gflags::GetCommandLineFlagInfoOrDie(flag).is_default; }
+
+void RefuseGiven(const std::vector<std::string>& flags, const std::string& why,
+                 const std::string& file) {
+  for (const std::string& flag : flags) {
+    if (!Given(flag.c_str())) continue;
+    const size_t place = why.find("{}");
+    throw Error{
+        place == std::string::npos ? "--" + flag + why : std::string(why).replace(place, 2, flag),
+        file};
+  }
+}
 
 void Require(const std::string& flag, const std::string& value, const std::string& what) {
   if (!value.empty()) return;

@@ -32,26 +32,13 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
 // alone. Called before RunApp.
 void JoinRepeated(const std::string& flag, char separator, int argc, char** argv);
 
-// Errors: one of `flags` is given and acts, and `other` does not; `why` follows "--flag needs
-// --other". `other` acts where its value is not its default. A switch that is given as off asks for
-// nothing.
-void CheckNeeds(const std::vector<std::string>& flags, const std::string& other,
-                const std::string& why = "");
-// Errors: one of `flags` acts, and `other` too; `why` is the whole sentence, in which {} stands for
-// the flag.
-void CheckExcludes(const std::vector<std::string>& flags, const std::string& other,
-                   const std::string& why);
-
 // Whether a flag was given, even with its default's value.
 bool Given(const char* flag);
 
-// Throws "--FLAG WHY" for the first of these flags that is given. file: the one that refuses them.
-inline void RefuseGiven(const std::vector<std::string>& flags, const std::string& why,
-                        const std::string& file = "") {
-  for (const std::string& flag : flags) {
-    if (Given(flag.c_str())) throw Error{"--" + flag + why, file};
-  }
-}
+// Throws "--FLAG WHY" for the first of these flags that is given; where the sentence has a {},
+// which stands for the flag, WHY alone. file: the one that refuses them.
+void RefuseGiven(const std::vector<std::string>& flags, const std::string& why,
+                 const std::string& file = "");
 
 // Throws "--recordings is missing ..." when a flag that is needed is empty.
 void Require(const std::string& flag, const std::string& value, const std::string& what);

@@ -14,16 +14,14 @@ inline PostprocessOptions PostprocessFromCommandLine() {
   PostprocessOptions options;
   options.fade_residual = options.keep_bones = options.lock_feet = false;
   if (FLAGS_postprocess == "none") return options;
+  const std::map<std::string, bool*> corrections = {{"fade", &options.fade_residual},
+                                                    {"bones", &options.keep_bones},
+                                                    {"feet", &options.lock_feet}};
   for (const std::string& name : SplitList(FLAGS_postprocess)) {
-    if (name == "fade") {
-      options.fade_residual = true;
-    } else if (name == "bones") {
-      options.keep_bones = true;
-    } else if (name == "feet") {
-      options.lock_feet = true;
-    } else {
+    if (corrections.count(name) == 0) {
       throw Error{"--postprocess names '" + name + "'; it must list fade, bones, feet, or be none"};
     }
+    *corrections.at(name) = true;
   }
   return options;
 }

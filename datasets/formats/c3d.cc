@@ -460,7 +460,8 @@ class Reader {
     const double general = Number("ANALOG", "GEN_SCALE", 0, 1.0);
     analog_scale_ = PerChannel("SCALE", 1.0);
     analog_offset_ = PerChannel("OFFSET", 0.0);
-    // Where nothing says it, an offset at the end of the signed range is the middle of the other.
+    // A file without ANALOG:FORMAT has unsigned samples where an offset is at the end of the signed
+    // range: it is the middle of the unsigned one.
     const C3dParameter* format = file_.parameters.Find("ANALOG", "FORMAT");
     unsigned_ = format != nullptr && !format->texts.empty()
                     ? EqualsIgnoringCase(format->texts[0], "UNSIGNED")

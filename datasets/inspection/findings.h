@@ -1,5 +1,6 @@
 // datasets: what no recording of a pushed person should have, though every file of it can be read:
-// as data, judged once, and told alike by pushid-inspect, pushid-push, pushid-fit and Python.
+// as data, judged once, and reported in the same words by pushid-inspect, pushid-push, pushid-fit
+// and Python.
 //
 //   for (const std::string& warning : FindingTexts(FindingsOf(recordings))) ...
 #pragma once
@@ -105,7 +106,8 @@ std::vector<int> CopyOf(const std::vector<PendulumRecording>& recordings);
 // Findings of all recordings, copies among them.
 std::vector<Finding> FindingsOf(const std::vector<PendulumRecording>& recordings);
 
-// One sentence a kind: "the force does not return to zero in 2 cases (a: 5 N at the end; ...); ...".
+// One sentence a kind: "the force does not return to zero in 2 cases (a: 5 N at the end; ...);
+// ...".
 std::vector<std::string> FindingTexts(const std::vector<Finding>& findings);
 Warnings FindingWarnings(const std::vector<Finding>& findings);
 

@@ -53,14 +53,6 @@ struct Source {
   const char* whole() const { return is_bvh() ? "skeleton" : "file"; }
 };
 
-std::vector<int> AllCalled(const Source& source, const std::string& simplified) {
-  std::vector<int> found;
-  for (std::size_t i = 0; i < source.simplified.size(); ++i) {
-    if (source.simplified[i] == simplified) found.push_back(static_cast<int>(i));
-  }
-  return found;
-}
-
 Error SeveralError(const Source& source, const std::string& key, const std::vector<int>& found) {
   const std::string &one = source.names[found[0]], &other = source.names[found[1]];
   return {key + " could be " + Quoted(one) + " or " + Quoted(other) +
@@ -83,7 +75,10 @@ std::vector<int> FindDefault(const Source& source, const std::string& key, const
       for (char c : pattern) {
         name += c == '$' ? side : c == '@' ? side.substr(0, 1) : std::string(1, c);
       }
-      const std::vector<int> found = AllCalled(source, name);
+      std::vector<int> found;
+      for (std::size_t i = 0; i < source.simplified.size(); ++i) {
+        if (source.simplified[i] == name) found.push_back(static_cast<int>(i));
+      }
       if (found.empty()) break;
       if (found.size() > 1 && !source.is_bvh()) throw SeveralError(source, key, found);
       chosen.push_back(found[0]);
@@ -116,111 +111,6 @@ std::vector<int> DefaultAnkle(const Source& source, int role) {
   const std::vector<int> ankle = FindDefault(source, RoleName(role), side, sets);
   const bool fzj = source.is_bvh() && IsFzjSkeleton(*source.skeleton);
   return ankle.empty() && fzj ? std::vector<int>{role} : ankle;
-}
-
-// Another point of the foot that `ankle` belongs to; empty where there is none that is clear.
-std::vector<int> OfFoot(const Source& source, const std::string& side, const PendulumJoints& joints,
-                        const std::vector<int>& ankle, const std::vector<const char*>& parts) {
-  for (const char* part : parts) {
-    for (const std::string& name : NamesOnSide(side, part)) {
-      std::vector<int> found;
-      for (int i : AllCalled(source, name)) {
-        const bool own = PrefixOf(source.names[i]) == PrefixOf(source.names[ankle[0]]);
-        if (own && i != joints.left_ankle[0] && i != joints.right_ankle[0]) found.push_back(i);
-      }
-      if (found.size() == 1) return found;
-    }
-  }
-  return {};
-}
-
-std::vector<int> ToeOf(const Source& source, const std::string& side, const PendulumJoints& joints,
-                       const std::vector<int>& ankle) {
-  if (source.is_bvh() && IsFzjSkeleton(*source.skeleton) &&
-      (ankle[0] == kLeftAnkle || ankle[0] == kRightAnkle)) {
-    return {ankle[0] + 1};
-  }
-  return OfFoot(source, side, joints, ankle,
-                {"toebase", "toe", "toes", "bigtoe", "toetip", "mt2", "mt1", "mt5", "foot"});
-}
-
-// The joint or point that one name or index means.
-int Look(const Source& source, const std::string& key, const JointReference& reference) {
-  const int count = static_cast<int>(source.names.size());
-  const std::string noun = source.noun();
-  if (reference.name.empty()) {
-    if (reference.index >= 0 && reference.index < count) return reference.index;
-    throw Error{StrCat("joints: ", key, " is ", noun, " ", reference.index, ", but the ",
-                       source.whole(), " has ", noun, "s 0 to ", count - 1),
-                source.path};
-  }
-  std::vector<int> found;  // "LASI" for "Anna:LASI"
-  for (int i = 0; i < count; ++i) {
-    const std::string& name = source.names[i];
-    if (name == reference.name) return i;
-    const std::size_t prefix = name.rfind(':');
-    if (!source.is_bvh() && prefix != std::string::npos &&
-        name.substr(prefix + 1) == reference.name) {
-      found.push_back(i);
-    }
-  }
-  if (found.size() == 1) return found[0];
-  Error error = found.empty() ? UnknownNameError(source.path, noun, source.names, reference.name)
-                              : SeveralError(source, key, found);
-  error.message = "joints: " + key + ": " + error.message;
-  throw error;
-}
-
-std::vector<int> Meant(const Source& source, const std::string& key,
-                       const JointReference& reference) {
-  if (reference.mean_of.empty()) return {Look(source, key, reference)};
-  std::vector<int> chosen;
-  for (const JointReference& one : reference.mean_of) chosen.push_back(Look(source, key, one));
-  return chosen;
-}
-
-// The joints of `reference`, otherwise the role's default, which is only looked for where it is
-// wanted, as it may be ambiguous. Throws an Error: neither is there.
-std::vector<int> Choose(const Source& source, int role,
-                        const std::optional<JointReference>& reference) {
-  const std::string& key = RoleName(role);
-  if (reference) return Meant(source, key, *reference);
-  const std::vector<int> found = role == kBodyHip ? DefaultHip(source) : DefaultAnkle(source, role);
-  if (!found.empty()) return found;
-  const std::string noun = source.noun();
-  throw Error{"no " + noun + " could be recognised as " + key +
-                  "; name it in the manifest: \"joints\": {\"hip\": ..., \"left_ankle\": ..., "
-                  "\"right_ankle\": ...}; the " +
-                  source.whole() + " has " + ListOfNames(source.names, kNamesInErrors, noun + "s"),
-              source.path};
-}
-
-PendulumJoints ChooseFrom(Source source, const JointMapping& mapping) {
-  for (const std::string& name : source.names) source.simplified.push_back(SimplifiedName(name));
-  PendulumJoints joints;
-  joints.hip = Choose(source, kBodyHip, mapping.Of(kBodyHip));
-  joints.left_ankle = Choose(source, kLeftAnkle, mapping.Of(kLeftAnkle));
-  joints.right_ankle = Choose(source, kRightAnkle, mapping.Of(kRightAnkle));
-  if (joints.hip == joints.left_ankle || joints.hip == joints.right_ankle ||
-      (joints.left_ankle == joints.right_ankle && mapping.of_role.count(kBaseRole) == 0)) {
-    throw Error{"hip, left_ankle and right_ankle must be three different " + source.noun() +
-                    "s, not " + Quoted(source.names[joints.hip[0]]) + ", " +
-                    Quoted(source.names[joints.left_ankle[0]]) + " and " +
-                    Quoted(source.names[joints.right_ankle[0]]) +
-                    "; name them by \"joints\" in the manifest",
-                source.path};
-  }
-  for (const bool is_left : {true, false}) {
-    const std::string side = is_left ? "left" : "right";
-    const std::vector<int>& ankle = is_left ? joints.left_ankle : joints.right_ankle;
-    const int role = is_left ? kLeftToe : kRightToe;
-    const std::optional<JointReference> named = mapping.Of(role);
-    (is_left ? joints.left_toe : joints.right_toe) =
-        named ? Meant(source, RoleName(role), *named) : ToeOf(source, side, joints, ankle);
-    (is_left ? joints.left_heel : joints.right_heel) =
-        OfFoot(source, side, joints, ankle, {"heel", "hee", "cal", "calc"});
-  }
-  return joints;
 }
 
 // Words of a role in four namings, as SimplifiedName has them; '|' before the next best one, '+'
@@ -324,6 +214,102 @@ class RoleFinder {
 
   std::vector<std::string> simplified_;
 };
+
+// Another point of the foot that `ankle` belongs to; empty where there is none that is clear.
+std::vector<int> OfFoot(const Source& source, const std::string& side, const PendulumJoints& joints,
+                        const std::vector<int>& ankle, const std::string& words) {
+  std::vector<std::string> others = source.names;
+  for (int taken : {joints.left_ankle[0], joints.right_ankle[0]}) others[taken].clear();
+  return RoleFinder(others, PrefixOf(source.names[ankle[0]])).Find(side, words);
+}
+
+std::vector<int> ToeOf(const Source& source, const std::string& side, const PendulumJoints& joints,
+                       const std::vector<int>& ankle) {
+  if (source.is_bvh() && IsFzjSkeleton(*source.skeleton) &&
+      (ankle[0] == kLeftAnkle || ankle[0] == kRightAnkle)) {
+    return {ankle[0] + 1};
+  }
+  return OfFoot(source, side, joints, ankle, "toebase|toe|toes|bigtoe|toetip|mt2|mt1|mt5|foot");
+}
+
+// The joint or point that one name or index means.
+int Look(const Source& source, const std::string& key, const JointReference& reference) {
+  const int count = static_cast<int>(source.names.size());
+  const std::string noun = source.noun();
+  if (reference.name.empty()) {
+    if (reference.index >= 0 && reference.index < count) return reference.index;
+    throw Error{StrCat("joints: ", key, " is ", noun, " ", reference.index, ", but the ",
+                       source.whole(), " has ", noun, "s 0 to ", count - 1),
+                source.path};
+  }
+  std::vector<int> found;  // "LASI" for "Anna:LASI"
+  for (int i = 0; i < count; ++i) {
+    const std::string& name = source.names[i];
+    if (name == reference.name) return i;
+    const std::size_t prefix = name.rfind(':');
+    if (!source.is_bvh() && prefix != std::string::npos &&
+        name.substr(prefix + 1) == reference.name) {
+      found.push_back(i);
+    }
+  }
+  if (found.size() == 1) return found[0];
+  Error error = found.empty() ? UnknownNameError(source.path, noun, source.names, reference.name)
+                              : SeveralError(source, key, found);
+  error.message = "joints: " + key + ": " + error.message;
+  throw error;
+}
+
+std::vector<int> Meant(const Source& source, const std::string& key,
+                       const JointReference& reference) {
+  if (reference.mean_of.empty()) return {Look(source, key, reference)};
+  std::vector<int> chosen;
+  for (const JointReference& one : reference.mean_of) chosen.push_back(Look(source, key, one));
+  return chosen;
+}
+
+// The joints of `reference`, otherwise the role's default, which is only looked for where it is
+// wanted, as it may be ambiguous. Throws an Error: neither is there.
+std::vector<int> Choose(const Source& source, int role,
+                        const std::optional<JointReference>& reference) {
+  const std::string& key = RoleName(role);
+  if (reference) return Meant(source, key, *reference);
+  const std::vector<int> found = role == kBodyHip ? DefaultHip(source) : DefaultAnkle(source, role);
+  if (!found.empty()) return found;
+  const std::string noun = source.noun();
+  throw Error{"no " + noun + " could be recognised as " + key +
+                  "; name it in the manifest: \"joints\": {\"hip\": ..., \"left_ankle\": ..., "
+                  "\"right_ankle\": ...}; the " +
+                  source.whole() + " has " + ListOfNames(source.names, kNamesInErrors, noun + "s"),
+              source.path};
+}
+
+PendulumJoints ChooseFrom(Source source, const JointMapping& mapping) {
+  for (const std::string& name : source.names) source.simplified.push_back(SimplifiedName(name));
+  PendulumJoints joints;
+  joints.hip = Choose(source, kBodyHip, mapping.Of(kBodyHip));
+  joints.left_ankle = Choose(source, kLeftAnkle, mapping.Of(kLeftAnkle));
+  joints.right_ankle = Choose(source, kRightAnkle, mapping.Of(kRightAnkle));
+  if (joints.hip == joints.left_ankle || joints.hip == joints.right_ankle ||
+      (joints.left_ankle == joints.right_ankle && mapping.of_role.count(kBaseRole) == 0)) {
+    throw Error{"hip, left_ankle and right_ankle must be three different " + source.noun() +
+                    "s, not " + Quoted(source.names[joints.hip[0]]) + ", " +
+                    Quoted(source.names[joints.left_ankle[0]]) + " and " +
+                    Quoted(source.names[joints.right_ankle[0]]) +
+                    "; name them by \"joints\" in the manifest",
+                source.path};
+  }
+  for (const bool is_left : {true, false}) {
+    const std::string side = is_left ? "left" : "right";
+    const std::vector<int>& ankle = is_left ? joints.left_ankle : joints.right_ankle;
+    const int role = is_left ? kLeftToe : kRightToe;
+    const std::optional<JointReference> named = mapping.Of(role);
+    (is_left ? joints.left_toe : joints.right_toe) =
+        named ? Meant(source, RoleName(role), *named) : ToeOf(source, side, joints, ankle);
+    (is_left ? joints.left_heel : joints.right_heel) =
+        OfFoot(source, side, joints, ankle, "heel|hee|cal|calc");
+  }
+  return joints;
+}
 
 int CountOf(const BodyRoles& roles) {
   return static_cast<int>(std::count_if(roles.joints.begin(), roles.joints.end(),

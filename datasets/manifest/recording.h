@@ -109,7 +109,7 @@ constexpr EnumNames<InitialVelocity, 3> Names(InitialVelocity) {
            {"free", InitialVelocity::kFree}}};
 }
 
-// What is said of a recording as a whole, from its entry in a manifest on.
+// Facts about a recording as a whole, which its entry in a manifest gives.
 struct RecordingFacts {
   std::string id;
   RecordingLabels labels;
@@ -160,8 +160,8 @@ struct RecordedPerson {
   double mass_kg = 0.0;
   PersonFacts known;
   std::string file;  // of the motion
-  // Clock of that file at frame 0, s, how much of it is before frame 0 (first_frame), and its axes:
-  // for forces that were recorded in it or beside it.
+  // The clock of that file at frame 0 (s), the time before frame 0 that first_frame leaves out (s),
+  // and the file's axes: forces that were recorded in this file or beside it need them.
   double file_clock_s = 0.0, skipped_s = 0.0;
   std::string file_up = "z", file_forward = "x";
   // Joint positions, one entry per frame, metres.

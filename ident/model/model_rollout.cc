@@ -69,7 +69,8 @@ double ImpulsePerMass(const IdentifiedModel& model, const PendulumRecording& rec
 
 bool HasDirection(const ScenePush& push) { return !push.mean.head<2>().isZero(0.0); }
 
-// From the model's x axis, in degrees; to the left and to the right alike.
+// The push's angle from the model's x axis, degrees; pushes to the left and to the right count
+// alike.
 double Direction(const IdentifiedModel& model, const PendulumRecording& recording,
                  const ScenePush& push) {
   const double angle =
@@ -77,8 +78,8 @@ double Direction(const IdentifiedModel& model, const PendulumRecording& recordin
   return std::abs(std::remainder(angle, 2.0 * M_PI)) * 180.0 / M_PI;
 }
 
-// Where a horizontal force at the body has the push's torque, as a fraction of the rod; at least a
-// hundredth, because a range is one of factors.
+// The height, as a fraction of the rod, at which a horizontal force on the body has the push's
+// torque; at least a hundredth, because ranges are compared by their ratios.
 double HeightOfRod(const PendulumRecording& recording, const ScenePush& push) {
   const ScenePerson& person = recording.scene.people[push.person];
   Vector4<double> f = push.mean;

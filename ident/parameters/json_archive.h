@@ -29,7 +29,7 @@
 
 #include "datasets/files/names.h"
 
-// At most sixty, by the macros with which nlohmann's JSON goes through members.
+// Members as fields, at most sixty: nlohmann's own macros go through the list.
 #define PUSHID_FIELDS(archive, object, ...)                              \
   do {                                                                   \
     auto& fields_of = archive;                                           \

@@ -206,16 +206,15 @@ class ModelJudge {
     // Fewer know nothing of their own scatter.
     if (static_cast<int>(std::min(inside.size(), outside.size())) < kFewestClusters) return;
     const std::vector<Eigen::Index> free = Free(false);
-    const Eigen::MatrixXd beside = beside_(free, free);
+    // Without the estimates' priors: where these pull an estimate from the truth, its score in a part
+    // is the part's share of all scores. The step errs as it is stated.
+    Eigen::MatrixXd beside = beside_(free, free);
+    beside.topLeftCorner(num_estimates(), num_estimates()).setZero();
     const Eigen::MatrixXd share = SolveSymmetric(Eigen::MatrixXd(information_(free, free) + beside),
                                                  Eigen::MatrixXd(information(free, free)))
                                       .transpose();
     const Eigen::MatrixXd parts = some(free, Eigen::all) - share * scores_(free, Eigen::all);
-    // The pull of priors at the optimum is balanced by all rows, and by their share of these; the
-    // step errs as it is stated.
-    Eigen::MatrixXd stated = beside;
-    stated.topLeftCorner(num_estimates(), num_estimates()).setZero();
-    const Eigen::MatrixXd of_step = share * stated * share.transpose();
+    const Eigen::MatrixXd of_step = share * beside * share.transpose();
     for (Eigen::Index i = 0; i < problem_.map().num_shared(); ++i) {
       const double error =
           std::hypot(ErrorOfSum(parts.row(i).transpose()), std::sqrt(of_step(i, i)));
