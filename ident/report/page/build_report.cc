@@ -517,6 +517,7 @@ ReportSection LeadSection(const ReportSource& source) {
   const std::vector<Advice>& advice = source.model.advice;
   section.Say("What to do next: " +
               (advice.empty() ? "predict a push that was not fitted." : advice.front().sentence));
+  section.Say(DifferencesText(source.fit));
   section.Say(GainsText(source.fit));
   section.Say(BalanceText(source.fit));
   const std::string travels = TravelText(source.propagation);
