@@ -27,7 +27,8 @@ constexpr double kMostGain = 2.0, kUsualGain = 0.9;  // of those who are quickes
 constexpr double kSlowToMove = 0.5, kLeastGain = 0.3, kSlideGain = 1.0;  // of who is looked at
 constexpr double kSurelyLate = 0.08, kSurelyEarly = 0.15;                // s
 constexpr int kSustained = 3, kFewestRows = 5;                           // frames
-constexpr double kImpulseEnds = 0.01;  // of the impulse, at both ends
+constexpr double kImpulseEnds = 0.01;                // of the impulse, at both ends
+constexpr double kRestBetween = 0.5, kAtRest = 0.2;  // s between pushes; of the peak
 
 // Standard deviation of white noise: of second differences, by their median.
 double NoiseOf(const Vectors& path, int axis) {
@@ -83,6 +84,7 @@ class Comparison {
         turns_ = turns_ || !row.tail<2>().isZero(0.0);
       }
     }
+    EndWhereItRests();
     impulse_.setZero();
     double all = 0.0, sum = 0.0;
     for (const Eigen::Vector2d& row : force_) {
@@ -98,6 +100,22 @@ class Comparison {
       if (end_ < 0 && sum >= (1.0 - kImpulseEnds) * all) end_ = t + 1;
     }
     return true;
+  }
+
+  // A sensor's record may hold several pushes, of which only the first is compared.
+  void EndWhereItRests() {
+    double peak = 0.0;
+    for (const Eigen::Vector2d& row : force_) peak = std::max(peak, row.norm());
+    const int frames = static_cast<int>(force_.size()), rest = static_cast<int>(kRestBetween / dt_);
+    for (int t = 0, last = frames; t < frames; ++t) {
+      if (!(force_[t].norm() > kAtRest * peak)) continue;
+      if (t - last > rest) {
+        next_ = std::min(next_, t - rest / 2);
+        std::fill(force_.begin() + last + rest / 2, force_.end(), Eigen::Vector2d::Zero());
+        return;
+      }
+      last = t;
+    }
   }
 
   // The point that carries the mass, smoothed, and its velocity, around the push; of a cart that is

@@ -25,13 +25,16 @@ struct PushedPerson {
   double scale = 1.0;    // of that
   double late = 0.0;     // s, of that
   double rest = 0.0;     // N, added to every row of it
+  double again = 0.0;    // N s, of a second push 1.5 s after the first
   int frames = 120;
   PushKind kind = PushKind::kExternal;
 };
 
 double ForceAt(const PushedPerson& how, double t) {
-  const double phase = (t - kStart) / 0.2;
-  return phase > 0.0 && phase < 1.0 ? how.impulse * M_PI / 0.4 * std::sin(M_PI * phase) : 0.0;
+  const bool second = t > kStart + 1.0;
+  const double phase = (t - kStart - (second ? 1.5 : 0.0)) / 0.2;
+  const double impulse = second ? how.again : how.impulse;
+  return phase > 0.0 && phase < 1.0 ? impulse * M_PI / 0.4 * std::sin(M_PI * phase) : 0.0;
 }
 
 PendulumRecording Make(const PushedPerson& how, uint64_t seed = 1) {
@@ -204,6 +207,22 @@ TEST(Findings, NetPushes) {
   EXPECT_EQ(KindsOf(Make(how)), Kinds{});
   how.scale = 0.05;
   EXPECT_EQ(KindsOf(Make(how)), Kinds{FindingKind::kNetGain});
+}
+
+// A robot's log is one record of many pushes, whose impulses may cancel.
+TEST(Findings, OfARecordWithSeveralPushesTheFirstIsJudged) {
+  PushedPerson how;
+  how.frames = 240;
+  for (double again : {-20.0, -18.0, 20.0}) {
+    how.again = again;
+    for (bool stands : {false, true}) {
+      how.stands = stands;
+      EXPECT_EQ(KindsOf(Make(how)), Kinds{}) << again;
+    }
+  }
+  how.stands = false;
+  how.scale = 1000.0;
+  EXPECT_EQ(KindsOf(Make(how)), (Kinds{FindingKind::kGain, FindingKind::kStrong}));
 }
 
 TEST(Findings, WhatIsNotSeenIsNotJudged) {
