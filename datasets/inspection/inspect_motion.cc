@@ -134,6 +134,7 @@ class MotionInspector {
     hip_ = MeanTrack(motion_.positions, joints.hip);
     left_ = MeanTrack(motion_.positions, joints.left_ankle);
     right_ = MeanTrack(motion_.positions, joints.right_ankle);
+    on_base_ = !pelvis_.known() && joints.left_ankle == joints.right_ankle;
     const int frames = motion_.num_frames();
     const auto seen = [this](int t) { return (hip_[t] + left_[t] + right_[t]).allFinite(); };
     while (first_ < frames && !seen(first_)) ++first_;
@@ -205,7 +206,7 @@ class MotionInspector {
     const std::optional<LengthUnit> fits = UnitThatGives(rod, kShortestRod, kLongestRod);
     const LengthUnit unit = motion_.unit ? *motion_.unit : fits.value_or(LengthUnit::kMillimetre);
     metres_ = MetresPer(unit);
-    found_.Fact("unit", NameOf(unit) + (motion_.unit ? ", as given in the file"
+    found_.Fact("unit", NameOf(unit) + (motion_.unit ? ", as given in the file or its mapping"
                                         : fits       ? ", inferred from the rod length"
                                                      : ", assumed"));
     if (!motion_.unit && !motion_.unit_text.empty()) {
@@ -249,6 +250,7 @@ class MotionInspector {
       to_the_left_ += Across(left_[t] - right_[t], up);
     }
     const Eigen::Vector3d at_first = Across(left_[first_] - right_[first_], up);
+    if (on_base_) return "";
     if (to_the_left_.isZero() || at_first.isZero()) return "the ankles are in one place";
     if (Angle(at_first, to_the_left_) > kTurned) {
       return "one foot is ahead, or the person turns: the line between the ankles turns by " +
@@ -267,8 +269,10 @@ class MotionInspector {
     const std::string doubt = FindFacing(&by);
     const Eigen::Vector3d forward = to_the_left_.cross(rod_);
     const std::string faces = forward.norm() > 0.0 ? AxisName(forward) : "?";
-    found_.Fact("axes", up_ + " is up, the person faces " + faces + " (by " + by +
-                            (doubt.empty() ? ")" : ", unsure)"));
+    found_.Fact("axes", up_ + " is up" +
+                            (on_base_ ? ""
+                                      : ", the person faces " + faces + " (by " + by +
+                                            (doubt.empty() ? ")" : ", unsure)")));
     if (!doubt.empty()) {
       found_.Warn("the facing direction is uncertain: " + doubt +
                   "; set \"forward\" according to the room");
@@ -372,6 +376,7 @@ class MotionInspector {
   Inspection& found_;
   Track hip_, left_, right_;
   int first_ = 0;  // the frame at which all of them are first seen
+  bool on_base_ = false;  // of support, which has no left and no right
   Eigen::Vector3d rod_, to_the_left_ = Eigen::Vector3d::Zero();
   double metres_ = 0.0;  // 0: not known
   std::string up_;

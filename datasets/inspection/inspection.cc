@@ -397,6 +397,7 @@ void LookAtTable(const MotionFormatRow& format, const ColumnMapping& mapping, In
   const Result<PointMotion> motion = ReadPointMotion(found->path, format.value, options);
   PointMotion points = motion.ok() ? WithoutForces(motion.value()) : PointMotion();
   points.rate_hz = rate;
+  if (mapping.length.length_unit) points.unit = mapping.length.length_unit;
   if (motion.ok() && points.names.size() < motion.value().names.size()) {
     found->Fact("of platforms",
                 "forces, moments or centres of pressure, which \"force_plates\" of "

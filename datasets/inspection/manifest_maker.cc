@@ -71,6 +71,9 @@ class Maker {
     const std::string unused = UnusedMasses();
     if (!massless_.empty()) {
       throw Error{"no mass is given for " + ListOfNames({massless_.begin(), massless_.end()}) +
+                  (pattern_.Has("subject") || pattern_.Has("person")
+                       ? ""
+                       : ", as everybody is called where the pattern has no {subject}") +
                   "; list them in a file with the columns id,mass_kg (--masses)" +
                   (unused.empty() ? "" : "; " + unused)};
     }

@@ -231,6 +231,22 @@ TEST_F(InspectionTest, ThroughAMapping) {
   EXPECT_TRUE(Contains(said, "hip 0.87 m above the ankles"));
 }
 
+// A robot's base of support has no left and no right, and its unit is the mapping's.
+TEST_F(InspectionTest, ABaseOfSupport) {
+  std::string text = "t,cx,cy,cz,bx,by,bz\n";
+  for (int t = 0; t < 100; ++t) text += std::to_string(0.01 * t) + ",0.31,0,0.8,0.3,0,0\n";
+  WriteText("log.csv", text);
+  const ColumnMapping mapping = Unwrapped(ReadColumnMapping(WriteText(
+      "map.json",
+      "{\"columns\": {\"com\": [\"cx\", \"cy\", \"cz\"], \"base\": [\"bx\", \"by\", \"bz\"]}, "
+      "\"time\": \"t\", \"length_unit\": \"m\", \"joints\": {\"hip\": \"com\", \"base\": "
+      "\"base\"}}")));
+  const std::string said = InspectionText(Unwrapped(Inspect(Path("log.csv"), mapping)));
+  EXPECT_TRUE(Contains(said, "unit            m, as given in the file or its mapping")) << said;
+  EXPECT_FALSE(Contains(said, "mm is assumed")) << said;
+  EXPECT_FALSE(Contains(said, "facing")) << said;
+}
+
 TEST_F(InspectionTest, RateAndNames) {
   motion_.rate_hz = 25.0;
   motion_.names[1] = "foo";

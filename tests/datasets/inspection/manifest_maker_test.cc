@@ -345,6 +345,13 @@ TEST_F(ManifestMakerTest, MassesThatAreNotKnown) {
       Contains(people("Anna,62,a\nben,80,b\n"),
                "no mass is given for anna; list them in a file with the columns id,mass_kg "
                "(--masses); the masses list Anna, who is in no recording: are the ids spelt"));
+  const ManifestOptions named = options_;
+  options_.pattern = "*_{magnitude}_{take}.bvh";
+  options_.push_pattern = "";
+  EXPECT_TRUE(Contains(people("anna,62,a\n"),
+                       "no mass is given for person, as everybody is called where the pattern has "
+                       "no {subject}; list"));
+  options_ = named;
   options_.mass_kg = 70.0;
   EXPECT_EQ(people("anna,62,a\nben,n/a,b\n"), "no error");
   const ManifestSubject ben =
