@@ -62,6 +62,7 @@ std::string PreparationText(const std::map<std::string, std::string>& configurat
 
 ReportSection ShortSection(const FittedModel& model, const std::string& more) {
   ReportSection section{"short", "In short"};
+  section.Say(DifferencesText(model.fit));
   section.Say(GainsText(model.fit));
   section.Say(BalanceText(model.fit));
   section.Say(more);

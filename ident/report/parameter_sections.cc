@@ -204,10 +204,14 @@ std::string ConventionText(const FitResult& result) {
     one_passive = one_passive || spec.id == kPassiveDamping;
     if (spec.id != kPassiveDamping) tied.push_back(spec.name + " = " + specs[*spec.tied_to].name);
   }
-  std::string quoted = std::string(IsOneMachine(result.options.model)
-                                       ? "Gains are those of the recorded body"
-                                       : "Gains are for a person of 85 kg with a rod of 0.95 m") +
-                       " (gain scaling: " + NameOf(result.options.model.gain_scaling) + ").\n";
+  const GainScaling scaling = result.options.model.gain_scaling;
+  std::string quoted =
+      std::string(IsOneMachine(result.options.model) ? "Gains are those of the recorded body"
+                  : scaling == GainScaling::kNone    ? "Gains are the same for every body"
+                  : scaling == GainScaling::kMass
+                      ? "Gains are for a person of 85 kg"
+                      : "Gains are for a person of 85 kg with a rod of 0.95 m") +
+      " (gain scaling: " + NameOf(scaling) + ").\n";
   // LDP's Kd multiply differences from frame to frame.
   if (result.options.preset.rfind("ldp", 0) == 0 && !per_frame.empty()) {
     quoted += "In LDP's units, per frame of 1/60 s: " + Joined(per_frame) + ".\n";

@@ -199,13 +199,31 @@ std::vector<const AssumptionTest*> Suspects(const ModelVerdict& v) {
   return {};
 }
 
+// The body that gains are quoted for, as the end of a title.
+std::string GainsAreFor(GainScaling scaling) {
+  if (scaling == GainScaling::kNone) return "";
+  return std::string("; gains for 85 kg") +
+         (scaling == GainScaling::kBody ? " and a rod of 0.95 m" : "");
+}
+
+// The true step lies between none and the one that was taken, so that no integrator explains
+// a larger one: it imitates people who react late.
+std::string RemedyText(const ModelVerdict& v, const AssumptionTest& test) {
+  if (test.name == kStepName && test.wanted > 0.0) {
+    for (const AssumptionTest& other : v.assumptions) {
+      if (other.name == kReactionDelayName) return "people who react late look so: try --delay=one";
+    }
+  }
+  const Remedy* const remedy = FindRemedy(test);
+  return remedy != nullptr ? remedy->text : "try --free=" + test.name;
+}
+
 // Findings that contradict the model.
 std::vector<std::string> Contradictions(const ModelVerdict& v) {
   std::vector<std::string> found = v.of_pushes;
   const auto add = [&found](const std::string& what) { found.push_back(what); };
   const std::vector<const AssumptionTest*> wanted = Suspects(v);
   if (!wanted.empty()) {
-    const Remedy* const remedy = FindRemedy(*wanted.front());
     // "the lag of the pushes 0.6 +- 0.2 frames larger", "Kd_theta 40 % smaller".
     std::vector<std::string> all;
     for (const AssumptionTest* test : wanted) {
@@ -221,7 +239,7 @@ std::vector<std::string> Contradictions(const ModelVerdict& v) {
     }
     add("of what is taken as known, the recordings want " + Joined(all, ", or ") +
         " (p = " + Rounded(v.p_assumptions, 2) + " after " + std::to_string(v.NumTested()) +
-        " tests); " + (remedy != nullptr ? remedy->text : "try --free=" + wanted.front()->name));
+        " tests); " + RemedyText(v, *wanted.front()));
   }
   const PartTest* part = Surest(v.parts);
   if (part != nullptr && v.p_parts < kVerdictLevel) {
@@ -292,9 +310,16 @@ std::string BalanceText(const FitResult& result) {
 
 TextTable ShortTable(const FitResult& result) {
   constexpr size_t kMost = 10;  // in the model's order
+  // Slopes of a contrast are those of the joint fit; DifferencesText tells what people's own fits
+  // know better.
+  const auto contrasted = [&result](const std::string& name) {
+    const size_t at = name.find('~');
+    return result.contrast && at != std::string::npos &&
+           name.substr(at + 1) == result.contrast->label;
+  };
   std::vector<const Estimate*> free;
   for (const Estimate& e : result.estimates) {
-    if (e.status != EstimateStatus::kFixed) free.push_back(&e);
+    if (e.status != EstimateStatus::kFixed && !contrasted(e.name)) free.push_back(&e);
   }
   if (free.size() > kMost) {
     std::stable_partition(free.begin(), free.end(), [](const Estimate* e) {
@@ -386,6 +411,32 @@ std::string ContrastText(const FitResult& result) {
          (apart
               ? "judged by everybody's own fit; effects are in standard deviations between people\n"
               : "judged by the joint fit, by people as clusters\n");
+}
+
+std::string DifferencesText(const FitResult& result) {
+  constexpr size_t kMost = 3;
+  if (!result.contrast || result.contrast->rows.empty()) return "";
+  std::vector<const ContrastRow*> rows;
+  for (const ContrastRow& row : result.contrast->rows) {
+    if (row.status != EstimateStatus::kUnidentifiable) rows.push_back(&row);
+  }
+  const size_t all = rows.size();
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const ContrastRow* a, const ContrastRow* b) { return a->p < b->p; });
+  rows.resize(std::min(all, kMost));
+  std::vector<std::string> differences;
+  for (const ContrastRow* row : rows) {
+    const std::string p = ProbabilityText(row->p_holm);
+    differences.push_back(row->name + " " + Rounded(row->difference, 3) + " " +
+                          IntervalText(row->difference, row->lower95, row->upper95, 3) +
+                          (row->unit == "1" ? "" : " " + row->unit) + " (p " +
+                          (p[0] == '<' ? "" : "= ") + p + ")");
+  }
+  return Capitalized(result.contrast->second) + " less " + result.contrast->first + ": " +
+         (differences.empty() ? "nothing is known" : Joined(differences)) +
+         (all == 0 ? "."
+                   : "; Holm's p of " + CountText(all, "parameter") +
+                         (all > kMost ? ", the others by --details." : "."));
 }
 
 TextTable LoopTable(const FitResult& result) {
@@ -590,11 +641,12 @@ Screen ScreenOf(const FittedModel& model) {
   Screen screen;
   screen.title = (from.version.empty() ? "pushid" : "pushid " + from.version) + ", preset " +
                  result.options.preset + ": " + CountText(result.recordings.size(), "recording") +
-                 (from.setting.empty() ? "" : " (" + from.setting + ")");
+                 (from.setting.empty() ? "" : " (" + from.setting + ")") +
+                 GainsAreFor(result.options.model.gain_scaling);
   screen.verdict =
       (result.converged ? "" : "The solve did NOT converge. ") + FirstSentences(result, true);
   screen.tables = {ShortTable(result)};
-  screen.paragraphs = {GainsText(result), BalanceText(result)};
+  screen.paragraphs = {DifferencesText(result), GainsText(result), BalanceText(result)};
   screen.warnings = WarningTexts(result);
   if (!model.advice.empty()) {
     screen.next = {model.advice.front().sentence, CommandFor(from, model.advice.front().command)};

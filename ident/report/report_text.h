@@ -36,6 +36,8 @@ inline constexpr double kHolmLevel = 0.05;
 // are in standard deviations, and Holm's correction.
 TextTable ContrastTable(const Contrast& contrast);
 std::string ContrastText(const FitResult& result);
+// The surest of these differences in one sentence; empty of a fit without a contrast.
+std::string DifferencesText(const FitResult& result);
 
 // The identified loop of the quoted person (problem/linear_loop.h), a row for each plane, one for
 // both where they are alike: stiffness over m g l, damping ratio and frequency of the slowest

@@ -1,9 +1,11 @@
 // Intervals and gains as they are said.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ident/report/report_text.h"
+#include "ident/uncertainty/assumptions.h"
 #include "tests/test_support.h"
 
 namespace pushid {
@@ -89,6 +91,62 @@ TEST(ModelVerdictText, WhatStandingStillPredictsBetterComesFirst) {
       << FirstSentences(result);
   result.diagnostics.recordings[0].explained = -1.0;
   EXPECT_TRUE(Contains(FirstSentences(result), "This fit loses to standing still, which"));
+}
+
+// A step of the integrator that is larger than the one taken is no error of it.
+TEST(ModelVerdictText, PeopleWhoReactLateAreNoFaultOfTheIntegrator) {
+  FitResult result;
+  ModelVerdict& verdict = result.verdict;
+  verdict.not_checked.clear();
+  verdict.motion.explained = 0.9;
+  verdict.p_assumptions = 1e-3;
+  AssumptionTest step, delay;
+  step.name = kStepName, step.stated = 1.0, step.wanted = 13.0, step.error = 2.0, step.p = 1e-4;
+  delay.name = kReactionDelayName, delay.unit = "s", delay.stated = 0.14, delay.error = 0.01;
+  verdict.assumptions = {step, delay};
+  EXPECT_TRUE(Contains(FirstSentences(result), "try --delay=one")) << FirstSentences(result);
+  verdict.assumptions.pop_back();  // of a robot, or of a fit with a delay
+  EXPECT_TRUE(Contains(FirstSentences(result), "--resample_fps=240"));
+  verdict.assumptions = {step, delay};
+  verdict.assumptions[0].wanted = -0.9;
+  EXPECT_TRUE(Contains(FirstSentences(result), "--resample_fps=240"));
+}
+
+// People's own fits may tell groups apart where the joint fit's slopes do not.
+TEST(DifferencesText, TheSurestComeFirst) {
+  FitResult result;
+  EXPECT_EQ(DifferencesText(result), "");
+  result.contrast.emplace();
+  Contrast& contrast = *result.contrast;
+  contrast.label = "group", contrast.first = "controls", contrast.second = "patients";
+  const auto add = [&contrast](const std::string& name, double difference, double p) {
+    ContrastRow& row = contrast.rows.emplace_back();
+    row.name = name, row.unit = name == "com_height" ? "1" : "N m/rad";
+    row.difference = difference;
+    row.lower95 = difference - 100.0, row.upper95 = difference + 100.0;
+    row.p = p, row.p_holm = std::min(1.0, 4.0 * p);
+  };
+  add("Kp_phi", 50.0, 0.3);
+  add("Kp_theta", -252.0, 1e-6);
+  EXPECT_EQ(DifferencesText(result),
+            "Patients less controls: Kp_theta -252 [-352, -152] N m/rad (p <0.0001), Kp_phi 50 "
+            "[-50, 150] N m/rad (p = 1); Holm's p of 2 parameters.");
+  add("com_height", 0.5, 0.01);
+  add("Kd_phi", 1.0, 0.9);
+  const std::string text = DifferencesText(result);
+  EXPECT_TRUE(Contains(text, "com_height 0.5 [-99.5, 100] (p = 0.04), Kp_phi")) << text;
+  EXPECT_TRUE(Contains(text, "Holm's p of 4 parameters, the others by --details.")) << text;
+  EXPECT_FALSE(Contains(text, "Kd_phi"));
+
+  Estimate gain, slope, by_age;
+  gain.name = "Kp_theta", slope.name = "Kp_theta~group", by_age.name = "Kp_theta~age";
+  for (Estimate* e : {&gain, &slope, &by_age}) {
+    e->status = EstimateStatus::kWeak;
+    result.estimates.push_back(*e);
+  }
+  const std::string table = ShortTable(result).ToString();
+  EXPECT_FALSE(Contains(table, "~group")) << table;
+  EXPECT_TRUE(Contains(table, "~age")) << table;
 }
 
 TEST(ContrastTable, AnEffectOverNoSpreadHasNoSize) {
