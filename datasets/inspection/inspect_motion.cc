@@ -370,7 +370,7 @@ class MotionInspector {
   const PelvisSides& pelvis_;
   Inspection& found_;
   Track hip_, left_, right_;
-  int first_ = 0;  // the frame at which all of them are first seen
+  int first_ = 0;         // the frame at which all of them are first seen
   bool on_base_ = false;  // of support, which has no left and no right
   Eigen::Vector3d rod_, to_the_left_ = Eigen::Vector3d::Zero();
   double metres_ = 0.0;  // 0: not known

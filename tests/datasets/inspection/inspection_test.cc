@@ -234,7 +234,7 @@ TEST_F(InspectionTest, ThroughAMapping) {
 // A robot's base of support has no left and no right, and its unit is the mapping's.
 TEST_F(InspectionTest, ABaseOfSupport) {
   std::string text = "t,cx,cy,cz,bx,by,bz\n";
-  for (int t = 0; t < 100; ++t) text += std::to_string(0.01 * t) + ",0.01,0,0.8,0,0,0\n";
+  for (int t = 0; t < 100; ++t) text += std::to_string(0.01 * t) + ",0.31,0,0.8,0.3,0,0\n";
   WriteText("log.csv", text);
   const ColumnMapping mapping = Unwrapped(ReadColumnMapping(WriteText(
       "map.json",
