@@ -206,8 +206,8 @@ class ModelJudge {
     // Fewer know nothing of their own scatter.
     if (static_cast<int>(std::min(inside.size(), outside.size())) < kFewestClusters) return;
     const std::vector<Eigen::Index> free = Free(false);
-    // Without the estimates' priors: where these pull an estimate from the truth, its score in a part
-    // is the part's share of all scores. The step errs as it is stated.
+    // Without the estimates' priors: where these pull an estimate from the truth, its score in a
+    // part is the part's share of all scores. The step errs as it is stated.
     Eigen::MatrixXd beside = beside_(free, free);
     beside.topLeftCorner(num_estimates(), num_estimates()).setZero();
     const Eigen::MatrixXd share = SolveSymmetric(Eigen::MatrixXd(information_(free, free) + beside),

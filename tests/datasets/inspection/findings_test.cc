@@ -122,8 +122,7 @@ TEST(Findings, FaultsOfAPushAreTold) {
         << stands;
     EXPECT_EQ(kinds([](PushedPerson* p) { p->scale = 1e-3; }), Kinds{FindingKind::kGain}) << stands;
     EXPECT_EQ(kinds([](PushedPerson* p) { p->scale = 1.0 / 9.81; }), Kinds{FindingKind::kGain});
-    EXPECT_EQ(kinds([](PushedPerson* p) { p->scale = 1000.0; }),
-              Kinds{FindingKind::kGain});
+    EXPECT_EQ(kinds([](PushedPerson* p) { p->scale = 1000.0; }), Kinds{FindingKind::kGain});
     EXPECT_EQ(kinds([](PushedPerson* p) { p->late = 0.3; }), Kinds{FindingKind::kLate}) << stands;
     EXPECT_EQ(kinds([](PushedPerson* p) { p->rest = 6.0; }), Kinds{FindingKind::kZero}) << stands;
   }

@@ -169,7 +169,8 @@ TEST(BodyReportTest, KeysAreTheAgreedOnesAndJoinThoseOfThePendulum) {
                                  {"recordings", {{{"id", "a"}, {"fell", false}}}},
                                  {"baselines", {{"static", {{"mean", {{"hipADE_m", 0.7}}}}}}}};
   AddBodyJson(SummarizeAll(recordings, scores), &json);
-  for (const char* key : {"MPJPE_m", "hipADE_m", "hipFDE_m", "MBLE_m", "FSE_cm", "relative_MPJPE_m"}) {
+  for (const char* key :
+       {"MPJPE_m", "hipADE_m", "hipFDE_m", "MBLE_m", "FSE_cm", "relative_MPJPE_m"}) {
     EXPECT_TRUE(json["mean"].contains(key)) << key;
     EXPECT_TRUE(json["recordings"][0].contains(key)) << key;
     EXPECT_TRUE(json["baselines"]["rigid"]["mean"].contains(key)) << key;
