@@ -161,18 +161,20 @@ def points_of(hip, feet, turn):
     return [hip + [0.0, 0.0, ANKLE_HEIGHT], ankle(1), ankle(-1)]
 
 
-def noise_of(shape, size, random, memory=0.0):
-    """Normal noise of standard deviation `size`; `memory`: of one frame's noise in the next."""
+def noise_of(shape, size, random, memory=0.0, exact_start=False):
+    """Normal noise of standard deviation `size`, in frame 0 none if exact_start; `memory`: of one frame's noise in the next."""
     noise = random.standard_normal(shape)
     for t in range(1, shape[0] if memory else 0):
         noise[t] = memory * noise[t - 1] + math.sqrt(1.0 - memory * memory) * noise[t]
+    if exact_start:
+        noise[0] = 0.0
     return size * noise
 
 
-def write_points(path, times, points, noise, random, drift=0.0, memory=0.0):
+def write_points(path, times, points, noise, random, drift=0.0, memory=0.0, exact_start=False):
     names = [f"{p}_{axis}" for p in ("hip", "left_ankle", "right_ankle") for axis in "xyz"]
     slow = np.outer(times / max(times[-1], 1e-9), [drift, 0.0, 0.0])  # of the camera system, m
-    data = np.hstack([p + slow + noise_of(p.shape, noise, random, memory) for p in points])
+    data = np.hstack([p + slow + noise_of(p.shape, noise, random, memory, exact_start) for p in points])
     with open(path, "w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file)
         rows.writerow(["time", *names])

@@ -55,6 +55,7 @@ class Study:
     drift: float = 0.0  # m, of the cameras over a recording
     rate: float = 1.0  # of the frames
     memory: float = 0.0  # of one frame's noise in the next
+    exact_start: bool = False  # frame 0 has no noise
     weighed: float = 0.0  # by how much a person's mass in the files differs between recordings
 
 
@@ -133,7 +134,7 @@ def write(folder, study):
         for k, (direction, duration, height, force, (times, hip, feet)) in enumerate(pushes):
             name, hip, feet = f"s{s}_{k}", hip @ turn.T, feet @ turn[:2, :2].T
             people.write_points(f"{folder}/{name}.csv", times / study.rate, people.points_of(hip, feet, turn), study.noise, random,
-                                study.drift, study.memory)
+                                study.drift, study.memory, study.exact_start)
             off = study.aim / person.rod * random.standard_normal() if study.aim else 0.0
             people.write_push(f"{folder}/{name}_push.csv", force, direction + study.turn, hip, feet, study.fps, duration, study.scale,
                               height * study.height + off)
@@ -232,6 +233,7 @@ FEW = {
     "one person, weighed anew before each of 6 pushes": {"subjects": 1, "pushes": 6, "spread": 0.0, "weighed": 0.003},
     "six people who are alike, all pushed at one height": {"spread": 0.0},
     "ten people who are alike": {"subjects": 10, "spread": 0.0},
+    "ten people who are alike, frame 0 without noise": {"subjects": 10, "spread": 0.0, "exact_start": True},
 }
 # Ten people who come to rest within about two seconds.
 REST = {"subjects": 10, "rests": 2.0}
