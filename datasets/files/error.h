@@ -79,7 +79,7 @@ auto Caught(const Read& read) {
   }
 }
 
-// Something unusual that can be lived with.
+// An unusual finding that does not stop the work.
 struct Warning {
   std::string text;            // the sentence
   std::string recording = {};  // id, where it is of one

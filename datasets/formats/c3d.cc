@@ -460,8 +460,8 @@ class Reader {
     const double general = Number("ANALOG", "GEN_SCALE", 0, 1.0);
     analog_scale_ = PerChannel("SCALE", 1.0);
     analog_offset_ = PerChannel("OFFSET", 0.0);
-    // A file without ANALOG:FORMAT has unsigned samples where an offset is at the end of the signed
-    // range: it is the middle of the unsigned one.
+    // A file without ANALOG:FORMAT has unsigned samples if an offset is the middle of their range,
+    // which is the end of the signed one.
     const C3dParameter* format = file_.parameters.Find("ANALOG", "FORMAT");
     unsigned_ = format != nullptr && !format->texts.empty()
                     ? EqualsIgnoringCase(format->texts[0], "UNSIGNED")

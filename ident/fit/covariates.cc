@@ -19,7 +19,7 @@
 namespace pushid {
 namespace {
 
-// In prior standard deviations.
+// The bound of a slope, in standard deviations of its prior.
 constexpr double kSlopeBound = 10.0;
 
 using Recordings = std::vector<PendulumRecording>;

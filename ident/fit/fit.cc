@@ -63,8 +63,8 @@ double Reweigh(FitProblem problem, const FitPoint& point, FitOptions* weights,
 }
 
 // For optima on the way to the final one, which need not be exact.
-FitProblem Roughly(FitProblem problem, double tolerance,
-                   int iterations = std::numeric_limits<int>::max()) {
+FitProblem WithTolerance(FitProblem problem, double tolerance,
+                         int iterations = std::numeric_limits<int>::max()) {
   FitOptions& options = *problem.mutable_options();
   options.function_tolerance = std::max(tolerance, options.function_tolerance);
   options.max_iterations = std::min(iterations, options.max_iterations);
@@ -102,8 +102,8 @@ bool SolveAndReweigh(FitProblem* problem, SolveStart* start) {
       problem->SetWeights(now);
       start->recordings = std::move(recordings);
     }
-    const FitProblem rough =
-        Roughly(*problem, kRough, network ? problem->options().max_iterations : kFewIterations);
+    const FitProblem rough = WithTolerance(
+        *problem, kRough, network ? problem->options().max_iterations : kFewIterations);
     SolveOn(exact ? *problem : rough, start);
   }
   if (!exact) SolveOn(*problem, start);
@@ -128,10 +128,10 @@ SolveStart SolveHeld(const FitProblem& demanding, const SolveStart& free) {
   for (double share : kDemandSteps) {
     part.mutable_options()->settling_weight = share * demanding.options().settling_weight;
     if (share == kDemandSteps[0] && std::isinf(CostAt(part.WithoutRecordings(), free.to))) {
-      held = SolveFrom(Roughly(part, kRough), part.NominalPoint(), "nominal", nullptr);
+      held = SolveFrom(WithTolerance(part, kRough), part.NominalPoint(), "nominal", nullptr);
     } else {
       const double exact = part.options().function_tolerance;
-      SolveOn(Roughly(part, share < 1.0 ? kLessExact * exact : exact), &held);
+      SolveOn(WithTolerance(part, share < 1.0 ? kLessExact * exact : exact), &held);
     }
   }
   held.failed = FailuresAfter(demanding, held);
@@ -176,7 +176,7 @@ WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progres
   problem->mutable_options()->settling_weight = 0.0;
   WeightedSolution solved;
   Solution& solution = solved.solution;
-  solution = Solve(Roughly(*problem, kRough), progress);
+  solution = Solve(WithTolerance(*problem, kRough), progress);
   solved.work.Add("starts and horizons");
   if (!solution.ok()) {
     problem->mutable_options()->settling_weight = weight;

@@ -97,7 +97,7 @@ Result<FitOptions> OverPreset(const std::string& preset, const GivenOptions& giv
   if (MaybeError error = ApplyStage(OptionStage::kModel, given, &o)) return *error;
   FreeTerms(&o);
   if (MaybeError error = ApplyStage(OptionStage::kTable, given, &o)) return *error;
-  // Its shape is known now, and so is the seed.
+  // The network's shape and seed are known now.
   if (const auto network = o.model.learned) {
     o.model.learned = InitialNetwork(network->shape, o.seed, network->rod, network->pair);
   }
@@ -236,7 +236,7 @@ std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOpti
 
 namespace {
 
-// To choose by, where two options exclude each other.
+// What each of two options answers, for messages where they exclude each other.
 constexpr char kQuestions[] =
     "rollouts (--likelihood=trajectory, with --delay and platforms) answer how stiff, damped and "
     "late people balance, likelihoods of single steps how much of their motion is noise";
@@ -266,8 +266,8 @@ Warnings WarningsBefore(const std::vector<PendulumRecording>& recordings,
   return warnings;
 }
 
-// Where all share one unit, its deviation and the shared value would be one number. It is
-// a warning only where pooling was asked for.
+// Pooling is taken out where all recordings share one unit, whose deviation and the shared value
+// would be one number. The user is warned only if pooling was asked for.
 void UnpoolOneUnit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
                    Warnings* warnings) {
   if (!AnyPooled(options->table)) return;
@@ -420,7 +420,7 @@ MaybeError CheckLaboratory(const std::vector<PendulumRecording>& recordings,
                                    [](const GroundPose& pose) { return !pose.tail<2>().isZero(); });
     const std::string name = "recording " + r.id;
     const std::string measured = name + " has force_plates to be measured against";
-    // Where nobody saw the motion, only what platforms measure is compared.
+    // Without recorded motion, only what the platforms measure is compared.
     const std::string alone = name + " was measured by force plates alone (\"motion\": \"none\")";
     error = FirstOf(
         {{moves && rod, name +

@@ -60,7 +60,7 @@ struct FitResult : ModelFacts {
   std::vector<Work> work;  // of solve and judgement
 
   bool ok() const { return best_start >= 0; }
-  // Where ok().
+  // The start with the lowest cost. Requires ok().
   const SolveStart& Best() const { return starts[best_start]; }
   SolveStart& Best() { return starts[best_start]; }
 };

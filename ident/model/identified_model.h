@@ -22,7 +22,7 @@ struct ValueRange {
     lower = std::min(lower, value);
     upper = std::max(upper, value);
   }
-  // How far a value lies outside, as a factor; 1 inside, and where the range is empty.
+  // The factor by which a value lies outside; 1 inside, and if the range is empty.
   double Beyond(double value) const {
     return empty() ? 1.0 : std::max({1.0, value / upper, lower / value});
   }

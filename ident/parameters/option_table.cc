@@ -20,7 +20,7 @@ using Row = FitOptionRow;
 
 // Rows by the kind of their value.
 
-// Where a row's value stands: among the options of the fit, those of the model, or the sigmas.
+// The place of a row's value: the options of the fit, those of the model, or the sigmas.
 template <typename T>
 class OptionField {
  public:

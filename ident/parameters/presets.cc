@@ -145,8 +145,8 @@ FitOptions LdpPublishedGroupsPreset() {
   return o;
 }
 
-// Where people stand and how they are pushed differ between settings, not their bodies: with gains
-// of their own settings do not settle, and are predicted worse.
+// Settings differ in where people stand and how they are pushed, not in bodies: settings with gains
+// of their own do not settle, and are predicted worse.
 constexpr char kPooledWhereFeetStep[] =
     "contact_stiffness,contact_distance,contact_kappa,contact_damping,tail_gain,tail_time,"
     "tail_exponent";
@@ -215,7 +215,8 @@ void FreeSideways(FitOptions* o) {
   }
 }
 
-// One passive share, unless that of the damping is named: apart, it and the damping hardly are.
+// Stiffness and damping have one passive share, because the data hardly tell two apart, unless the
+// damping's is named.
 void TiePassive(FitOptions* o) {
   ParameterSpec& damping = o->table[kPassiveDamping];
   if (o->model.delay == Delay::kNone || damping.named) return;

@@ -98,8 +98,9 @@ inline constexpr double kLeastSteppingRate = 29.0;
 
 PushedFeet FeetOf(const std::vector<PendulumRecording>& recordings);
 
-// Nobody moved: fixed. Fewer than half of who moved lifted a foot, or nobody's feet were recorded:
-// slide. Three in four moved: of_movers. Else: steps.
+// The stance of a fit by what feet did. Nobody moved: fixed. Fewer than half of those who moved
+// lifted a foot, or nobody's feet were recorded: slide. Three in four moved: of_movers. Else:
+// steps.
 Stance StanceOf(const PushedFeet& feet, Stance of_movers);
 
 // "feet hold (--stance=fixed; they moved in 0 of 24 pushes)"; empty: no feet were recorded.

@@ -65,8 +65,8 @@ std::vector<SettlingSimulation> Simulate(const ModelOptions& options,
   return simulations;
 }
 
-// How long after the push until everybody in all of these scenes stands still and stays so;
-// infinite as in SettlingSeconds.
+// Seconds from the push until everybody in all of these scenes stands still and stays so; infinite
+// as in SettlingSeconds.
 double SecondsUntilStill(const std::vector<Scene>& scenes, const ModelOptions& options,
                          const ParameterSet<double>& parameters) {
   constexpr double kLongest = 10.0;  // s
@@ -147,7 +147,7 @@ struct LateVelocity {
         add_lag(place.of_rate.back + i, place.of_rate.weight[i] * (1.0 - share) * rate);
       }
     };
-    // All that the ankles feel of the cart is late (Perceive).
+    // The ankles feel the cart's motion late in all its parts (Perceive).
     Eigen::Array<double, 6, 1> passive;
     passive << p[kPassiveStiffness], p[kPassiveStiffness], 0.0, 0.0, p[kPassiveDamping],
         p[kPassiveDamping];

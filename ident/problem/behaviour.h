@@ -65,8 +65,8 @@ struct Behaviour {
   void Add(const Behaviour& other, const std::string& setting);
 };
 
-// How long after a push the slowest of the people whom a fit is held to settles for good, s;
-// infinite: not within 10 s, or they fall.
+// Seconds from a push until the slowest of the simulated people, whom the demand to settle is put
+// to, stands still for good; infinite: not within 10 s, or somebody falls.
 double SettlingSeconds(const ModelOptions& options, const ParameterSet<double>& parameters);
 
 Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<double>& parameters);

@@ -69,7 +69,7 @@ class FitProblem {
   FitProblem(const std::vector<PendulumRecording>& recordings, FitOptions options,
              std::vector<int> counts = {});
 
-  // Its priors and demands alone.
+  // The problem of the priors and demands alone.
   FitProblem WithoutRecordings() const;
 
   const FitOptions& options() const { return options_; }
@@ -87,7 +87,7 @@ class FitProblem {
   }
   // Its lower and upper bound, on the fitted scale.
   std::pair<double, double> Bounds(size_t fitted) const;
-  // Where a parameter stands among the fitted ones; as many as these are where it is held.
+  // The index of a parameter among the fitted ones; their number if it is held.
   size_t FittedIndex(Parameter id) const;
   // The recordings as the model sees them: in axes along their pushes, where it is the same in all
   // directions.
@@ -121,7 +121,7 @@ class FitProblem {
   // where these differ in what acts then.
   std::vector<std::string> SettlingUnits(const FitPoint& point) const;
 
-  // After a push at a point; where settings or conditions differ, in each.
+  // The behaviour after a push at a point, in each setting or condition if they differ.
   Behaviour BehaviourAt(const FitPoint& point) const;
 
   // Recordings whose rollout over `horizon` frames (0: all) leaves the domain at a point; none

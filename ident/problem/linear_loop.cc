@@ -12,7 +12,8 @@ namespace pushid {
 namespace {
 
 constexpr int kNodes = 24;  // of the past: growth to 1e-6 up to 30 1/s with a delay of 0.3 s
-// Where margins are looked for: beyond, neither ankles nor what feels their angle answer.
+// Frequencies among which margins are looked for: beyond them, neither the ankles nor the senses
+// of their angle respond.
 constexpr double kLowestHz = 1e-3, kHighestHz = 100.0;
 constexpr int kSteps = 4000;
 

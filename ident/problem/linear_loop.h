@@ -50,8 +50,8 @@ struct LoopNumbers {
   double fastest_growth = 0.0;  // 1/s, largest real part of the modes; not of the free place
   // The oscillating pair that dies out last (or grows fastest); none where nothing oscillates.
   std::optional<double> damping_ratio, natural_hz;
-  // None where the loop is unstable, where |L| never is 1 (phase, delay), or is never real and
-  // negative on that side (gain).
+  // Margins: none if the loop is unstable, if |L| is never 1 (phase, delay), or if L is never real
+  // and negative on that side (gain).
   std::optional<double> phase_margin;        // rad
   std::optional<double> delay_margin;        // s
   std::optional<double> gain_up, gain_down;  // factors, > 1 and < 1

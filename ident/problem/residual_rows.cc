@@ -188,7 +188,7 @@ namespace {
 
 constexpr double kStep = 1e-5;  // of a column's unit
 
-// By rollout: empty where it leaves the domain, and without a problem.
+// Raw residuals by rollout: empty if it leaves the domain, or has no problem.
 ResidualsByRecording ResidualsOf(const std::vector<RolloutAt>& rollouts) {
   auto sums = SumUp(PutSideBySide(rollouts), rollouts, LaneSums::kNone);
   ResidualsByRecording raw(rollouts.size());

@@ -78,14 +78,14 @@ struct Assumption {
   std::string unit;    // of eta; empty: a share, or a logarithm of a factor
   double sigma = 0.0;  // standard deviation that is stated of eta; 0: none, it is only tested
   double step = 0.0;   // of differences
-  // Its changes to every recording, or to the options of the fit. Null: none.
+  // The changes that eta makes to every recording, or to the options of the fit. Null: none.
   std::function<void(double eta, PendulumRecording*)> of_recording;
   std::function<void(double eta, FitOptions*)> of_options = nullptr;
   // Estimates that go with it to the first order, and how far each shared one does at `step`, on
   // the fitted scale: the column is the difference to the problem in which they do.
   std::vector<std::pair<size_t, double>> along = {};
-  // It scales measured rates, and what is compared with them instead: their noise would ask for
-  // less.
+  // Whether eta scales measured rates. The column then scales what is compared with them instead,
+  // because their noise would ask for a smaller eta.
   bool of_rates = false;
   bool halves_steps = false;  // of_recording makes two of every step
 };

@@ -33,7 +33,8 @@ constexpr double kNetworkTolerance = 1e-6;
 // last's.
 constexpr double kOnTheWay = 1e-4, kLessExact = 3.0;
 constexpr double kOffBound = 0.1;
-// In a row, each of a smaller trust region: where people fall, or leave the model's domain.
+// Invalid steps in a row, each of a smaller trust region, in which people fall or leave the model's
+// domain.
 constexpr int kInvalidSteps = 20;
 
 class ProgressCallback : public ceres::IterationCallback {
@@ -50,9 +51,9 @@ class ProgressCallback : public ceres::IterationCallback {
   std::string phase_;
 };
 
-// Where demands begin and contacts close, steps shrink with the trust region until one is within
-// the tolerance, which is no optimum: from such an end a fresh region goes on, without what secants
-// learned, while it brings more than so many tolerances.
+// Tolerances that a fresh trust region must bring to go on. Steps shrink where demands begin and
+// contacts close, until one is within the tolerance without an optimum: a fresh region then starts
+// from there, without what the secants learned.
 constexpr double kWorthAnother = 50.0;
 constexpr int kMostFresh = 5;
 

@@ -240,10 +240,10 @@ bool SummedCost::Evaluate(double const* const* x, double* residuals, double** ja
   const bool derivatives = jacobians != nullptr && jacobians[0] != nullptr;
   const bool known = derivatives && recordings_.AreAt(at);
   SetValues(x[0]);
-  // Where demands alone cost more than all did where derivatives were asked for last, the step is
-  // refused, whatever the recordings say: nobody rolls them out. By more than any tolerance, so
-  // that no solver takes it for an end. Demands alone are few: they go without threads, and count
-  // as no evaluation.
+  // The step is refused without a rollout of the recordings if the demands alone cost more than
+  // everything did where derivatives were asked for last, by more than any tolerance, so that no
+  // solver takes it for an end. Demands are few: they go without threads, and count as no
+  // evaluation.
   double squares = 0.0;
   if (!derivatives && squares_ > 0.0 && AddParts(false, &squares, nullptr) &&
       squares > kClearly * squares_ && std::isfinite(squares)) {

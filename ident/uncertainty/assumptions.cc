@@ -52,7 +52,7 @@ void Lag(double eta, PendulumRecording* r) {
   });
 }
 
-// At the hands, eta metres higher.
+// Pushes act at the hands, eta metres higher.
 void Raise(double eta, PendulumRecording* r) {
   ForMeasured(r, [eta, r](ScenePush* push) {
     const std::vector<PendulumState<double>>& states = r->states[push->person];
@@ -154,7 +154,7 @@ void HalveSteps(double, PendulumRecording* r) {
   for (auto& of_one : r->plates) Double(next, &of_one);
 }
 
-// So much more of the masses in the carts.
+// Carts carry a share of the masses that is larger by eta.
 void LoadCarts(double eta, PendulumRecording* r) {
   for (ScenePerson& person : r->scene.people) person.body.point_share -= eta;
 }

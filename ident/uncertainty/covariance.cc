@@ -309,7 +309,7 @@ double EstimateEffectiveWeight(const FitProblem& problem, const FitPoint& point,
   const double one_each = static_cast<double>(counted) / frames;
   if (counted < 2) return one_each;
   const double lambda = CompositeInflation(problem, point, recordings);
-  // By its own sigmas no frame is worth more than one: that would undo the markers' noise.
+  // A frame weighs at most one if the fit estimates its sigmas: more would undo the markers' noise.
   const bool own = EstimatesSigmas(problem.options()), told = lambda > 0.0;
   const double estimate = now / frames / lambda;
   const double weight = !told ? one_each : own ? std::min(1.0, estimate) : estimate;

@@ -206,8 +206,8 @@ class Profiler {
         free_(covariance_),
         cost_(Refit(problem, estimate).cost) {
     if (!uncertainty.settling.holds()) return;
-    // At the optimum without a demand that moved the fit, where its errors are told
-    // (uncertainty.h): at the edge of a demand H says how little room is left, not what frames err.
+    // Errors are those at the optimum without a demand that moved the fit (uncertainty.h): at the
+    // edge of a demand H says how little room is left, not how much the frames err.
     FitProblem undemanding = problem;
     undemanding.mutable_options()->settling_weight = 0.0;
     const SolveStart start = Refit(undemanding, estimate);

@@ -333,8 +333,8 @@ ScoredFit ScoreAt(const FitProblem& problem, const FitPoint& point, bool curvatu
   e.unit = Units(e.columns);
   e.clusters = MakeClusters(problem.recordings(), ClusterBy::kAuto, problem.counts());
   e.clustering = ClusterRows(problem, e.clusters, e.score);
-  // Where feet step the gradient jumps: differences across a jump left no minimum, and those of a
-  // shorter step know nothing of it.
+  // The gradient jumps where feet step: differences across a jump left no minimum, and those of a
+  // shorter step do not see it.
   const bool steps = problem.options().model.stance == Stance::kSteps;
   if (curvature && !steps && e.unit.size() <= kMostColumnsWithCurvature) {
     const bool rolls = problem.options().likelihood == Likelihood::kTrajectory;
@@ -390,8 +390,8 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
   u.freedom = u.clustered ? u.num_clusters - 1 : spread.naive_freedom;
   u.scatter = spread.scatter;
   u.these = spread.these;
-  // One cluster says nothing of how clusters scatter: the posterior's width is left, in which it
-  // counts as one independent frame.
+  // One cluster does not show how clusters scatter: the width of the posterior is left, in which
+  // the cluster counts as one independent frame.
   if (!u.clustered) u.scatter.Add(spread.inverse_hessian, kInfinity);
   u.covariance = u.scatter.Covariance();
   u.too_few_clusters = u.clustered && u.num_clusters - 1 < problem.map().num_shared();

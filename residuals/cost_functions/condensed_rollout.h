@@ -41,7 +41,7 @@ using SumsOfFrame = std::function<RolloutSums*(int person, int frame)>;
 void AddUpRows(const RolloutProblem& problem, bool raw, LaneSums wanted, const SumsOfFrame& to,
                std::vector<double>* residuals, RowMajorMatrix* rows);
 
-// As many rows as there are columns, and one, that have the sums of all (normal_equations.h).
+// Rows, one more than there are columns, that have the sums of all (normal_equations.h).
 struct PersonRows {
   RowMajorMatrix jacobian;
   Eigen::VectorXd residuals;
