@@ -32,7 +32,7 @@ DEFINE_string(bodies_out, "",
 
 DEFINE_string(
     formation, "",
-    "line, diamond or grid of --people, or a trajectory file (.txt), whose people at "
+    "line, diamond or grid of --people, or a trajectory file (.txt, .csv), whose people at "
     "--formation_frame are taken; the table judges everybody 2 s after the last push (or after "
     "the onset, if later)");
 DEFINE_int32(people, 4, "number of people in a line, diamond or grid");
@@ -95,11 +95,12 @@ std::vector<CrowdPlace> PlacesOfFile() {
 // Only the people of a file have names.
 std::vector<CrowdPlace> FormationPlaces() {
   if (FromFile()) return PlacesOfFile();
-  if (Given("formation_frame")) throw Error{"--formation_frame needs a trajectory file (.txt)"};
+  if (Given("formation_frame"))
+    throw Error{"--formation_frame needs a trajectory file (.txt, .csv)"};
   const auto shape = FromName<FormationShape>(FLAGS_formation);
   if (!shape) {
     throw Error{"--formation is '" + FLAGS_formation +
-                "'; it must be line, diamond or grid, or a trajectory file (.txt)"};
+                "'; it must be line, diamond or grid, or a trajectory file (.txt, .csv)"};
   }
   std::vector<CrowdPlace> places;
   for (const Eigen::Vector2d& at : FormationPositions(*shape, FLAGS_people, FLAGS_spacing)) {

@@ -1,5 +1,7 @@
 // apps: pushid-push: the push of a recording that has none, by inverse dynamics or from a sensor.
 #include <cmath>
+#include <map>
+#include <optional>
 #include <sstream>
 
 #include "apps/flags/command_line.h"
@@ -12,7 +14,8 @@
 #include "ident/push/push_estimation.h"
 
 DEFINE_string(id, "", "the recording, or several by --ids; default: all that --setting selects");
-DEFINE_int32(person, 0, "number of the pushed person, counted from 0");
+DEFINE_int32(person, 0,
+             "number of the pushed person, counted from 0; default: the manifest's pushed_person");
 DEFINE_string(out, "", "write the push here (CSV); {id} is replaced by the recording's id");
 DEFINE_bool(update, false, "write the push's entry into the manifest");
 
@@ -29,7 +32,8 @@ DEFINE_string(sensor_column, "",
               "channel, or platform:1");
 DEFINE_string(direction, "1,0,0", "force sensor: direction of the force on the person, x,y,z");
 DEFINE_double(height, pushid::SensorChoice{}.height_fraction,
-              "force sensor: contact height as a fraction of the rod (1: the hip)");
+              "force sensor: contact height as a fraction of the rod (1: the hip); default: the "
+              "manifest's push_height_m, or the hip");
 DEFINE_double(sensor_start, 0.0,
               "force sensor: its clock at frame 0, s; default: that of the motion if both are in "
               "one file or the record holds half of the recording by it; else both begin at once");
@@ -146,21 +150,29 @@ struct MadePush {
   double start_speed = 0.0;  // m/s; inverse dynamics only
 };
 
+int PushedPerson(const Recording& recorded) {
+  return Given("person") ? FLAGS_person : recorded.pushed_person;
+}
+
+// push_height_m: that of the recording's entry, which --height and a list of sensors replace.
 MadePush FromSensor(const PushFlags& flags, const Recording& recorded,
-                    const PendulumRecording& recording) {
+                    const PendulumRecording& recording,
+                    const std::optional<double>& push_height_m) {
   std::vector<SensorChoice> sensors = flags.sensors;
   for (SensorChoice& sensor : sensors) {
     sensor.file = WithId(sensor.file, recorded.id);
+    if (!SensorsListed() && !Given("height")) sensor.height_m = push_height_m;
     OrFail(CheckNotRead("--sensor", sensor.file));
   }
-  const SensorPush made = OrFail(PushFromSensors(sensors, recorded, recording, FLAGS_person));
+  const SensorPush made =
+      OrFail(PushFromSensors(sensors, recorded, recording, PushedPerson(recorded)));
   for (const std::string& warning : made.warnings) LOG(WARNING) << warning;
   return {recorded.id, OutOf(recorded.id), made.push, PushKind::kExternal, made.how};
 }
 
-MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& recording) {
+MadePush ByInverseDynamics(const PushFlags& flags, int person, const PendulumRecording& recording) {
   constexpr int kSmoothing = 9;  // frames; unsmoothed, 2 mm of noise cause 600 N
-  const PushEstimationOptions options{FLAGS_person, kSmoothing};
+  const PushEstimationOptions options{person, kSmoothing};
   if (recording.num_frames() < kSmoothing) {
     throw Error{"recording " + recording.id + " has fewer than " + std::to_string(kSmoothing) +
                 " frames, over which a push is smoothed"};
@@ -168,7 +180,7 @@ MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& reco
   const PushWindow window = OrFail(DetectPushWindow(recording, options, flags.window));
   const EstimatedPush push = OrFail(EstimatePush(recording, window, options));
   for (int t = window.start; t < window.end; ++t) {
-    if (recording.Weight(FLAGS_person, t) > 0.0) continue;
+    if (recording.Weight(person, t) > 0.0) continue;
     LOG(WARNING) << "hip or ankles are missing at frame " << std::to_string(t)
                  << " of the push: the force there is computed from interpolated positions";
     break;
@@ -219,7 +231,7 @@ void PrintPush(const MadePush& made, double dt) {
 void PrintEntry(const MadePush& of) {
   std::printf(
       "to use it, add these lines to the recording's entry of the manifest, in place of any "
-      "push_csv (--update does this):\n");
+      "push_csv and push_height_m (--update does this):\n");
   std::printf("  \"push_kind\": \"%s\",\n", NameOf(of.kind).c_str());
   std::printf("  \"pushes\": [{\"person\": %d, \"csv\": %s, \"start_frame\": %d}]\n",
               of.push.person,
@@ -249,6 +261,7 @@ void SetPush(const MadePush& of, ManifestRecording* entry) {
                 ", and this one is " + NameOf(of.kind) + "; an entry can have only one kind");
   }
   if (entry->pushed_person == person) entry->push_csv.clear();
+  entry->push_height_m.reset();  // the rows have torques
   entry->pushes = std::move(others);
   entry->pushes.push_back(
       {person, PathFromManifest(FLAGS_recordings, of.file), of.push.start_frame});
@@ -258,12 +271,18 @@ void SetPush(const MadePush& of, ManifestRecording* entry) {
 int Run() {
   const PushFlags flags = PushFlagsFromCommandLine();
   const std::vector<Recording> recordings = LoadFlaggedRecordings(flags.ids);
+  Manifest manifest = OrFail(FlaggedManifest());
+  std::map<std::string, std::optional<double>> heights;
+  for (const ManifestRecording& entry : manifest.recordings) {
+    heights[entry.id] = entry.push_height_m;
+  }
   std::vector<MadePush> pushes;
   std::vector<Finding> findings;
   for (const Recording& recorded : recordings) {
     const PendulumRecording recording = MakePendulumRecording(recorded);
-    const MadePush made = flags.sensors.empty() ? ByInverseDynamics(flags, recording)
-                                                : FromSensor(flags, recorded, recording);
+    const MadePush made = flags.sensors.empty()
+                              ? ByInverseDynamics(flags, PushedPerson(recorded), recording)
+                              : FromSensor(flags, recorded, recording, heights[recorded.id]);
     WarnOfFirstRow(made);
     Recording pushed = recorded;
     pushed.pushes = {made.push};
@@ -275,7 +294,6 @@ int Run() {
   }
   for (const std::string& warning : FindingTexts(findings)) LOG(WARNING) << warning;
   // Everything is checked before the first file is written.
-  Manifest manifest = OrFail(FlaggedManifest());
   for (ManifestRecording& entry : manifest.recordings) {
     for (const MadePush& push : pushes) {
       if (FLAGS_update && push.id == entry.id) SetPush(push, &entry);

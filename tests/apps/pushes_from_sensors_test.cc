@@ -88,6 +88,40 @@ TEST_F(PushesFromSensorsTest, OfAChannelOrAList) {
   EXPECT_TRUE(Refused(with({listed("rod.c3d"), "--height=1"}), {"--height", "the list"}));
   EXPECT_TRUE(Refused(with({c3d_flag, "--resample_fps=30"}), {"leave --resample_fps out"}));
 }
+// Who is pushed, and at which height, is the manifest's entry, which the written push then
+// replaces.
+TEST_F(PushesFromSensorsTest, TheManifestHasThePersonAndTheHeight) {
+  Succeeded(RunApp("pushid-simulate", {"--group_size=3", "--people=3", "--recordings_per_person=1",
+                                       "--push_kind=external", "--out=" + Path("row")}));
+  nlohmann::ordered_json json = Json(Path("row/manifest.json"));
+  nlohmann::ordered_json& entry = json["recordings"][0];
+  entry["pushed_person"] = 2;
+  entry.erase("push_csv");
+  entry.erase("pushes");
+  std::string record = "time,force\n";
+  for (int i = 0; i < 150; ++i) {
+    const double t = 0.01 * i, force = i < 10 || i > 30 ? 0.0 : 200.0;
+    record += std::to_string(t) + "," + std::to_string(force) + "\n";
+  }
+  const std::string sensor = "--sensor=" + WriteText("force.csv", record);
+  std::vector<std::string> rows;
+  for (double height : {0.6, 0.9}) {
+    entry["push_height_m"] = height;
+    const std::string manifest = WriteText("row/given.json", json.dump(1));
+    const AppRun run = Succeeded(RunApp(
+        "pushid-push", {"--recordings=" + manifest, "--id=" + entry["id"].get<std::string>(),
+                        sensor, "--out=" + Path("row/made.csv"), "--overwrite", "--update"}));
+    EXPECT_TRUE(Contains(run.out, "push on person 2")) << run.out;
+    const nlohmann::ordered_json written = Json(manifest)["recordings"][0];
+    EXPECT_FALSE(written.contains("push_height_m"));
+    EXPECT_EQ(written["pushes"][0]["person"], 2);
+    LoadOptions all;
+    EXPECT_TRUE(LoadRecordings(manifest, all).ok());
+    rows.push_back(ReadText(Path("row/made.csv")));
+  }
+  EXPECT_NE(rows[0], rows[1]) << "other torques";
+}
+
 // A load cell's file as its program wrote it: ms, semicolons, units in quoted heads; its range ends
 // at 60 N.
 TEST_F(PushesFromSensorsTest, OfAFileFromALoadCellWhoseRangeIsExceeded) {
