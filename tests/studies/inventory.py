@@ -15,7 +15,7 @@ import sys
 import studies
 
 ENDINGS = (".h", ".cc", ".py", ".sh", ".json", ".cmake", ".toml", "CMakeLists.txt")
-MOST_LINES, MOST_FILES, MOST_FLAGS, MOST_FIT_FLAGS, SLACK = 69985, 350, 160, 45, 1.05
+MOST_LINES, MOST_FILES, MOST_FLAGS, MOST_FIT_FLAGS, SLACK = 70004, 350, 160, 45, 1.05
 # Feature, goal, bound, and the files of it: the first row that matches a file has it.
 FEATURES = [
     ("contrasts", 560, 601, r"ident/(fit/(covariates|contrast)|uncertainty/contrast|report/contrast)"),
@@ -34,8 +34,8 @@ FEATURES = [
     ("restoration", 3500, 3796, r"models/restoration|ident/(training|bodies/restoration_files)|apps/(pushid_train_restoration|flags/(.*restoration|postprocess|body))"),
     ("bodies, animation", 2000, 1593, r"ident/bodies|apps/pushid_animate"),
     ("first frames", 1300, 958, r"ident/(observed|forecasts|prediction/online|report/page/forecast)|apps/flags/(futures|observed)"),
-    ("formations", 1600, 1470, r"ident/formations|models/crowd|apps/(formation|pushid_formation|flags/formation)"),
-    ("pushes", 2000, 1902, r"models/push|ident/(push/|model/push_range)|datasets/(sensors|formats/(push_csv|force_csv))|apps/(pushid_push|flags/push)"),
+    ("formations", 1600, 1471, r"ident/formations|models/crowd|apps/(formation|pushid_formation|flags/formation)"),
+    ("pushes", 2000, 1920, r"models/push|ident/(push/|model/push_range)|datasets/(sensors|formats/(push_csv|force_csv))|apps/(pushid_push|flags/push)"),
     ("design", 260, 259, r"ident/(validation/(experiment_design|study_plan|laboratory_plan|design)|report/design)"),
     ("prediction, evaluation, cross-validation", 2700, 3890, r"ident/(prediction|validation)|apps/pushid_(predict|evaluate|crossvalidate)|apps/flags/scheme"),
     ("loop and frequency", 800, 330, r"ident/(diagnostics/(frequency|loop|spectra|sway)|problem/linear_loop|report/loop|figures/bode)"),
