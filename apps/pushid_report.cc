@@ -5,6 +5,7 @@
 #include "ident/model/model_json.h"
 #include "ident/report/document.h"
 #include "ident/report/page/build_report.h"
+#include "ident/report/parameter_sections.h"
 #include "ident/report/report_text.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote");

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
-#include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/parameters/presets.h"
@@ -104,10 +102,6 @@ bool Alike(const LoopNumbers& a, const LoopNumbers& b) {
          same(a.natural_hz.value_or(0.0), b.natural_hz.value_or(0.0)) &&
          same(a.delay_margin.value_or(0.0), b.delay_margin.value_or(0.0));
 }
-
-using Place = nlohmann::ordered_json::json_pointer;
-
-constexpr double kFileRounding = 1e-6;  // of a parameter
 
 constexpr int kFewUnits = 5;  // of fewer a bootstrap has too few distinct resamples
 
@@ -493,45 +487,6 @@ std::string NetworkText(const FitResult& result) {
                 "computed"
               : "") +
          ")";
-}
-
-Result<std::map<std::string, double>> ReadTruth(const std::string& manifest_path) {
-  const Result<JsonDocument> document = ReadJsonDocument(manifest_path);
-  if (!document.ok()) return document.error();
-  try {
-    return document.value()
-        .content.at("synthetic")
-        .at("truth")
-        .get<std::map<std::string, double>>();
-  } catch (const nlohmann::json::exception&) {
-    if (document.value().content.contains(Place("/synthetic/formation"))) {
-      return Error{
-          "a formation of pushid-formation: its truth is the model it was rolled out "
-          "with; compare with that model's own report",
-          manifest_path};
-    }
-    return Error{"no `synthetic.truth`: only recordings of pushid-simulate have a known truth",
-                 manifest_path};
-  }
-}
-
-std::string TruthTable(const FitResult& result, const std::map<std::string, double>& truth) {
-  TextTable table({"parameter", ">truth", ">fitted", ">std error", "95 % interval", "unit", ""});
-  int covered = 0, compared = 0;
-  for (const Estimate& e : result.estimates) {
-    const auto known = truth.find(e.name);
-    if (e.status == EstimateStatus::kFixed || known == truth.end()) continue;
-    // Without noise an interval shrinks below what the files' decimals can hold.
-    const double slack = kFileRounding * std::abs(known->second);
-    const Interval i = e.interval();
-    const bool inside = i.lower - slack <= known->second && known->second <= i.upper + slack;
-    ++compared;
-    covered += inside;
-    table.Add({e.name, Rounded(known->second, 4), Rounded(e.value, 4), Rounded(i.standard_error, 3),
-               IntervalText(e.value, i.lower, i.upper), e.unit, inside ? "covers" : "misses"});
-  }
-  return table.ToString() + std::to_string(covered) + " of " + std::to_string(compared) +
-         " intervals cover the truth (on average one in 20 does not)\n";
 }
 
 std::string ForecastText(const ForecastRule& f) {

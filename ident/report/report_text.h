@@ -58,12 +58,6 @@ Screen ScreenOf(const FittedModel& model);
 // The learned terms: "rod ldp:2 (29 weights, prior 1)"; empty where nothing is learned.
 std::string NetworkText(const FitResult& result);
 
-// The true parameters, by name, that a manifest of pushid-simulate holds under `synthetic`.
-// Errors: unreadable, or a manifest of real recordings.
-Result<std::map<std::string, double>> ReadTruth(const std::string& manifest_path);
-// truth | identified | 95 % interval | whether it covers the truth, for every fitted parameter.
-std::string TruthTable(const FitResult& result, const std::map<std::string, double>& truth);
-
 // A sentence on how hips are forecast after observed frames.
 std::string ForecastText(const ForecastRule& forecasts);
 

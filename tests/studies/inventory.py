@@ -15,7 +15,7 @@ import sys
 import studies
 
 ENDINGS = (".h", ".cc", ".py", ".sh", ".json", ".cmake", ".toml", "CMakeLists.txt")
-MOST_LINES, MOST_FILES, MOST_FLAGS, MOST_FIT_FLAGS, SLACK = 70004, 350, 160, 45, 1.05
+MOST_LINES, MOST_FILES, MOST_FLAGS, MOST_FIT_FLAGS, SLACK = 70007, 350, 160, 45, 1.05
 # Feature, goal, bound, and the files of it: the first row that matches a file has it.
 FEATURES = [
     ("contrasts", 560, 601, r"ident/(fit/(covariates|contrast)|uncertainty/contrast|report/contrast)"),
@@ -40,7 +40,7 @@ FEATURES = [
     ("prediction, evaluation, cross-validation", 2700, 3890, r"ident/(prediction|validation)|apps/pushid_(predict|evaluate|crossvalidate)|apps/flags/scheme"),
     ("loop and frequency", 800, 330, r"ident/(diagnostics/(frequency|loop|spectra|sway)|problem/linear_loop|report/loop|figures/bode)"),
     ("uncertainty", 3200, 3476, r"ident/(uncertainty|problem/residual_rows|checks|fit/interval)|apps/(pushid_check|flags/check)"),
-    ("reports", 2800, 3332, r"ident/(report|figures/text_table)|apps/pushid_report"),
+    ("reports", 2800, 3335, r"ident/(report|figures/text_table)|apps/pushid_report"),
     ("charts", 1000, 826, r"ident/figures"),
     ("exchange", 350, 361, r"datasets/(exchange|formats/(trajector|motion_bids))|apps/pushid_export"),
     ("formats", 3900, 3939, r"datasets/(formats|files/(numeric_table|input_file|number_text|names|atomic|error|npy|random))"),

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "ident/report/parameter_sections.h"
 #include "ident/report/report_text.h"
 #include "tests/test_support.h"
 
