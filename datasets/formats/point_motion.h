@@ -32,8 +32,8 @@ struct PointMotion {
   // [chosen][frame], the file's unit and axes; NaN where the point was not seen (empty, NaN, or
   // exactly zero in all three coordinates; joints of BVH files are always seen).
   std::vector<std::vector<Eigen::Vector3d>> positions;
-  // Of a BVH file, whose points are its joints: the hierarchy, offsets in the file's lengths, and
-  // the values of all channels in the rows that were to be kept, row by row as they stand.
+  // The hierarchy of a BVH file, whose points are its joints, with offsets in the file's lengths,
+  // and the values of all channels in the rows that were to be kept, row by row as they stand.
   std::shared_ptr<const BvhSkeleton> skeleton;
   std::vector<double> values;
   std::string content_hash;

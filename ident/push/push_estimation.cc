@@ -140,8 +140,8 @@ SensorRecord ReadBeside(const Recording& recorded, int person, SensorChoice* sen
   SensorRecord record = OrThrow(ReadSensor(*sensor, &result->warnings));
   const bool together = sensor->start_s.has_value();
   if (!together) {
-    sensor->start_s = ClockBeside(record, recorded.people[person],
-                                  (recorded.num_frames() - 1) / recorded.fps);
+    sensor->start_s =
+        ClockBeside(record, recorded.people[person], (recorded.num_frames() - 1) / recorded.fps);
   }
   if (!said && (together || *sensor->start_s != 0.0)) {
     result->how += std::string(together ? "; recorded with the motion, its clock"

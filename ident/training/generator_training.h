@@ -22,7 +22,7 @@ struct GeneratorTrainingOptions : TrainerOptions {
   DiffusionTrainingOptions diffusion;
   SimlpeTrainingOptions simlpe;
   int seeds = RowOf(GeneratorKind::kParticles).seeds;  // networks that are averaged
-  // Of particles: the correction of whole forecasts and the blend
+  // The correction of whole forecasts by particles, and their blend
   // (models/generators/particle_generator.h).
   bool correction = true;
   double ridge_share = ParticleGeneratorOptions{}.ridge_share;

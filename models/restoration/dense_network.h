@@ -23,7 +23,7 @@ struct DenseLayer {
 
 // weights * values + bias; a column per sample.
 Eigen::MatrixXf Applied(const DenseLayer& layer, const Eigen::MatrixXf& values);
-// The same by Eigen's own product, which rounds differently.
+// weights * values + bias by Eigen's own product, which rounds differently.
 inline Eigen::MatrixXf AppliedByEigen(const DenseLayer& layer, const Eigen::MatrixXf& values) {
   return (layer.weights * values).colwise() + layer.bias;
 }

@@ -88,8 +88,8 @@ TEST_F(PushesFromSensorsTest, OfAChannelOrAList) {
   EXPECT_TRUE(Refused(with({listed("rod.c3d"), "--height=1"}), {"--height", "the list"}));
   EXPECT_TRUE(Refused(with({c3d_flag, "--resample_fps=30"}), {"leave --resample_fps out"}));
 }
-// Who is pushed, and at which height, is the manifest's entry, which the written push then
-// replaces.
+
+// The manifest's entry says who is pushed, and at which height; the written push replaces it.
 TEST_F(PushesFromSensorsTest, TheManifestHasThePersonAndTheHeight) {
   Succeeded(RunApp("pushid-simulate", {"--group_size=3", "--people=3", "--recordings_per_person=1",
                                        "--push_kind=external", "--out=" + Path("row")}));
