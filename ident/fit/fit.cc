@@ -62,7 +62,7 @@ double Reweigh(FitProblem problem, const FitPoint& point, FitOptions* weights,
   return std::max(change, UpdatePoolingSpread(problem, point, weights));
 }
 
-// For optima on the way to the final one, which need not be exact.
+// Intermediate optima need not be exact: a looser tolerance and fewer iterations for them.
 FitProblem WithTolerance(FitProblem problem, double tolerance,
                          int iterations = std::numeric_limits<int>::max()) {
   FitOptions& options = *problem.mutable_options();

@@ -1,5 +1,5 @@
-// ident: a motion that was seen to begin, what comes of it, and how that is learned: first what was
-// seen of a recording, and the filter of unknown forces on its scene.
+// ident: the first observed frames of a recording and the forecast that follows from them: the
+// observed state, and the filter of unknown forces on its scene.
 #pragma once
 
 #include <array>
