@@ -47,11 +47,11 @@ struct PairForce {
 // acts on n along the gradient of d, and its opposite on j. At x = w the spring has half the force
 // of a linear one of stiffness A, and the damping fades in with the load. The force is continuous,
 // the spring with its first derivatives; those of the damping jump at x = 0 from 0 to B x' / w. The
-// sum is not held to push: where two people part fast, the damping outweighs the spring and pulls (x' < 0; in
-// one published recording up to 45 N, 6.7 N s of pull against 46.6 N s of push). Cutting the pull
-// off would make the force itself depend on a switch. Generalized forces by virtual work at the
-// points. Rejected: LDP's potential, whose push depends on the neighbour's velocity and is not
-// mutual (below).
+// sum is not held to push: where two people part fast, the damping outweighs the spring and pulls
+// (x' < 0; in one published recording up to 45 N, 6.7 N s of pull against 46.6 N s of push).
+// Cutting the pull off would make the force itself depend on a switch. Generalized forces by
+// virtual work at the points. Rejected: LDP's potential, whose push depends on the neighbour's
+// velocity and is not mutual (below).
 
 inline constexpr double kContactOnset = 0.05;     // m, w above
 inline constexpr double kContactSoftness = 0.02;  // m, of the softmin
